@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* base: status and error, version, instruction-set level, float conversion, bit tricks.
+ *
+ * Everything here is thread-safe: the library holds no mutable global state.
+ */
+#ifndef SUNFLECK_BASE_H
+#define SUNFLECK_BASE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define SF_VERSION_MAJOR 0
+#define SF_VERSION_MINOR 1
+#define SF_VERSION_PATCH 0
+
+/* The version of the library that is linked, "major.minor.patch". */
+const char *sf_version(void);
+
+/* What became of a call. Only what can fail from outside returns one. */
+typedef enum sf_status {
+    SF_STATUS_OK = 0,
+    SF_STATUS_INVALID_VALUE, /* an argument, option or datum out of its range */
+    SF_STATUS_OUT_OF_MEMORY,
+    SF_STATUS_IO,          /* a file could not be read or written */
+    SF_STATUS_UNSUPPORTED, /* a method that lacks this operation, or a component not built in */
+    SF_STATUS_BACKEND      /* Embree or OpenImageIO reported an error of its own */
+} sf_status;
+
+#define SF_ERROR_MESSAGE_SIZE 512
+
+/* Filled by a failing call when the caller passed one (every `error` may be NULL).
+ * The message names the value given and what is allowed; it is always NUL-terminated. */
+typedef struct sf_error {
+    sf_status status;
+    char message[SF_ERROR_MESSAGE_SIZE];
+} sf_error;
+
+/* "ok", "invalid value", … ; never NULL. */
+const char *sf_status_name(sf_status status);
+
+/* The instruction-set level at which bulk kernels run. The core's results are the same bits
+ * on every level. */
+typedef enum sf_isa { SF_ISA_BASELINE = 0, SF_ISA_AVX2, SF_ISA_AVX512 } sf_isa;
+
+/* The highest level that this processor and this build have; the environment variable
+ * SUNFLECK_ISA (baseline, avx2, avx512) lowers it. Read at each call: about 0.1 µs. */
+sf_isa sf_isa_active(void);
+
+/* "baseline", "avx2", "avx512"; never NULL. */
+const char *sf_isa_name(sf_isa isa);
+
+/* A float in [0,1), never 1, from the top 24 bits: 24 bits are what a float's significand
+ * holds, so the integer converts exactly, and the product with 2^-24 is exact too. The
+ * largest result is 1 - 2^-24. Multiplying all 32 bits by 2^-32 would instead round up, and
+ * return 1 for 128 of the 2^32 inputs. */
+static inline float sf_float_from_bits(uint32_t bits) {
+    return (float)(int32_t)(bits >> 8) * 0x1p-24f;
+}
+
+/* A double in [0,1), never 1, from the top 53 bits, exact for the same reason. */
+static inline double sf_double_from_bits(uint64_t bits) {
+    return (double)(int64_t)(bits >> 11) * 0x1p-53;
+}
+
+/* The 32 bits in reverse order. */
+static inline uint32_t sf_reverse_bits32(uint32_t x) {
+    x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
+    x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+    x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
+    x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
+    return (x >> 16) | (x << 16);
+}
+
+/* The 64 bits in reverse order. */
+static inline uint64_t sf_reverse_bits64(uint64_t x) {
+    return ((uint64_t)sf_reverse_bits32((uint32_t)x) << 32) | sf_reverse_bits32((uint32_t)(x >> 32));
+}
+
+/* A bijective mix of 64 bits in which every input bit reaches every output bit: the finalizer
+ * of SplitMix64 (Stafford's variant 13; Steele, Lea & Flood 2014). Fixed point: 0. */
+static inline uint64_t sf_mix64(uint64_t x) {
+    x = (x ^ (x >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
+    x = (x ^ (x >> 27)) * UINT64_C(0x94d049bb133111eb);
+    return x ^ (x >> 31);
+}
+
+/* A key for the pair (key, word), for deriving seeds of dimensions, pixels and streams: two
+ * rounds of sf_mix64 around an odd-constant step, so that neither neighbouring keys nor
+ * neighbouring words give related results. */
+static inline uint64_t sf_hash64(uint64_t key, uint64_t word) {
+    return sf_mix64(sf_mix64(key + UINT64_C(0x9e3779b97f4a7c15)) ^
+                    (word * UINT64_C(0xd1342543de82ef95) + UINT64_C(0x632be59bd9b4e019)));
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* render: a committed scene and options in, a film out: per pixel the mean radiance, how many
+ * samples it took, how far it may be off, and why it stopped.
+ */
+#ifndef SUNFLECK_RENDER_H
+#define SUNFLECK_RENDER_H
+
+#include "sunfleck/base.h"
+#include "sunfleck/points.h"
+#include "sunfleck/scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define SF_MAX_IMAGE_SIZE 65536u        /* pixels a side */
+#define SF_MAX_SPP (UINT32_C(1) << 31)  /* samples a pixel */
+#define SF_MAX_THREADS 1024u
+#define SF_CELL_SIZE 8u                 /* pixels a side of the cells that rays are packed in */
+
+/* The density over the image plane that a pixel's samples are drawn from (filter importance
+ * sampling: every sample has weight 1, so a constant image stays constant). */
+typedef enum sf_pixel_filter {
+    SF_PIXEL_FILTER_BOX = 0, /* the pixel itself */
+    SF_PIXEL_FILTER_TENT,    /* two pixels wide: reaches half a pixel past the border */
+    SF_PIXEL_FILTER_GAUSSIAN /* sigma 0.4 pixel, unbounded: 1 sample in 5 lies outside the pixel */
+} sf_pixel_filter;
+
+/* When a pixel is done. */
+typedef enum sf_stop_rule {
+    /* The lecture's: z(confidence) s / sqrt(N) <= tolerance after min_spp samples, with the
+     * running vector mean and the scalar sum of squares. Kept as the baseline: points of a
+     * low-discrepancy pattern are not independent (it then overstates), and a pixel that has
+     * seen nothing has variance zero (it then stops, wrongly). */
+    SF_STOP_STANDARD_ERROR = 0
+} sf_stop_rule;
+
+/* How threads come by their random numbers. */
+typedef enum sf_seed_policy {
+    SF_SEEDS_PIXEL = 0, /* keyed by seed, pixel and dimension: the picture depends on no thread */
+    SF_SEEDS_THREAD,    /* a stream of its own for each thread: the lecture's remedy */
+    SF_SEEDS_SHARED     /* the same stream for every thread: the lecture's warning. N threads
+                           repeat one another's noise; for the laboratory */
+} sf_seed_policy;
+
+/* Why a pixel stopped. */
+typedef enum sf_stop_reason {
+    SF_STOP_FIXED = 0,    /* the fixed count asked for was taken */
+    SF_STOP_MET,          /* half-width within the tolerance */
+    SF_STOP_MAX_SAMPLES,  /* max_spp reached first */
+    SF_STOP_OUT_OF_TIME,  /* the time limit came first */
+    SF_STOP_SUSPICIOUS,   /* samples that were not finite were dropped */
+    SF_STOP_INTERRUPTED,  /* the caller asked to stop */
+    SF_STOP_REASON_COUNT
+} sf_stop_reason;
+
+/* The names of the four enumerations, "box", "standard-error", "pixel", "met", …; NULL for a
+ * value beyond the last, so that they can be listed. */
+const char *sf_pixel_filter_name(sf_pixel_filter filter);
+const char *sf_stop_rule_name(sf_stop_rule rule);
+const char *sf_seed_policy_name(sf_seed_policy policy);
+const char *sf_stop_reason_name(sf_stop_reason reason);
+
+/* How far a render is: given to the progress callback. */
+typedef struct sf_progress {
+    uint32_t round;           /* rounds finished */
+    uint64_t samples;         /* paths traced so far */
+    uint64_t pixels;          /* pixels of the crop */
+    uint64_t pixels_done;     /* of these, stopped */
+    uint64_t expected_samples; /* samples where the count is fixed, else 0 */
+    double seconds;           /* since the start */
+    double time_limit;        /* the seconds option, 0 where there is none */
+    int round_finished;       /* 1 at a round's end, 0 for the calls in between */
+} sf_progress;
+
+/* Called from the thread that called sf_render, at every round's end and at least every 50 ms;
+ * a return other than 0 stops the render, which keeps what it has. */
+typedef int (*sf_progress_fn)(const sf_progress *progress, void *user);
+
+typedef struct sf_render_options {
+    uint32_t width, height;  /* of the full frame, 1 .. SF_MAX_IMAGE_SIZE; default 512 */
+    uint32_t crop[4];        /* x0, y0, x1, y1, half open, in pixels of the full frame; all 0: the
+                                whole frame. Cells that the crop touches are traced whole, so that
+                                its pixels are the full frame's, bit for bit, at fixed spp (and
+                                adaptively with an absolute tolerance) */
+    uint32_t spp;            /* fixed samples a pixel, 0 .. SF_MAX_SPP; default 0: adaptive */
+    double relative_tolerance; /* of the level: the mean over the frame (the crop) of (R+G+B)/3
+                                after min_spp; >= 0; default 0 */
+    double absolute_tolerance; /* linear radiance, >= 0; default 0. A pixel is done when its
+                                half-width is at most max(absolute, relative * level). With spp,
+                                seconds and both tolerances 0, the relative one is 0.01 */
+    double confidence;       /* of the half-widths, in (0, 1); default 0.95 */
+    uint32_t min_spp;        /* before any decision, 2 .. max_spp; default 32 */
+    uint32_t max_spp;        /* 2 .. SF_MAX_SPP; default 4096 */
+    double seconds;          /* time limit, > 0; 0: none (default). Alone it is a budget: every
+                                pixel is refined until it is spent */
+    sf_pattern pattern;      /* uniform, random, jittered, halton, sobol (default) */
+    sf_pixel_filter pixel_filter; /* default box */
+    sf_stop_rule stop;       /* default standard-error */
+    sf_seed_policy seeds;    /* default pixel */
+    uint64_t seed;           /* default 0 */
+    uint32_t threads;        /* 1 .. SF_MAX_THREADS; 0: one for each processor (default) */
+    uint32_t tile_size;      /* pixels a side of what a thread takes at a time, a multiple of 8,
+                                8 .. 1024; default 16. Changes no bit of the film */
+    sf_progress_fn progress; /* default NULL */
+    void *progress_user;
+} sf_render_options;
+
+sf_render_options sf_render_options_default(void);
+
+typedef struct sf_film sf_film;
+
+/* Renders the scene. On success *film is the caller's, to be freed with sf_film_destroy; a
+ * render that was stopped early succeeds with what it has, and the film says so per pixel.
+ * On failure *film is NULL.
+ *
+ * With seeds = pixel: the same scene, options and seed give the same film bit for bit, for any
+ * number of threads, tile size and division of the work, on one instruction set.
+ * Thread-safe: several renders may run at once, of one scene or several. */
+sf_status sf_render(const sf_scene *scene, const sf_render_options *options, sf_film **film, sf_error *error);
+
+/* Frees the film; NULL is allowed. */
+void sf_film_destroy(sf_film *film);
+
+/* One channel of a film: an array of rows, top first. */
+typedef enum sf_channel_type { SF_CHANNEL_FLOAT32 = 0, SF_CHANNEL_UINT32, SF_CHANNEL_UINT8 } sf_channel_type;
+
+typedef struct sf_channel {
+    const char *name;     /* R G B A samples half_width stop_reason, in this order */
+    sf_channel_type type;
+    const void *data;     /* of pixel (0, 0); lives as long as the film */
+    size_t pixel_stride;  /* bytes */
+    size_t row_stride;    /* bytes */
+} sf_channel;
+
+/* The film's own size: the crop's. */
+uint32_t sf_film_width(const sf_film *film);
+uint32_t sf_film_height(const sf_film *film);
+
+/* The list that every image writer walks. R, G, B interleave (pixel_stride 12); A is the share
+ * of samples that hit a surface; half_width bounds the error of (R+G+B)/3 at the confidence
+ * asked for, infinity where fewer than two samples were taken; stop_reason holds sf_stop_reason. */
+size_t sf_film_channel_count(const sf_film *film);
+sf_channel sf_film_channel(const sf_film *film, size_t index);
+
+/* One attribute: every option as it was used (chosen defaults filled in), the seed, version,
+ * instruction set, scene hash, and what came of it. */
+typedef struct sf_attribute {
+    const char *name;
+    const char *text; /* as text in every case; numbers round-trip */
+} sf_attribute;
+size_t sf_film_attribute_count(const sf_film *film);
+sf_attribute sf_film_attribute(const sf_film *film, size_t index);
+
+/* What a render came to, over the film's pixels. */
+typedef struct sf_film_summary {
+    uint64_t pixels;
+    uint64_t samples;                       /* in the film's pixels */
+    uint64_t traced_samples;                /* with those of the crop's margin */
+    uint64_t reasons[SF_STOP_REASON_COUNT]; /* pixels by stop reason */
+    uint64_t nonfinite_samples;             /* dropped, never averaged in */
+    double level;                           /* mean of (R+G+B)/3 that a relative tolerance refers to */
+    double tolerance;                       /* in linear radiance; 0 where none was asked */
+    double confidence;
+    double worst_half_width;                /* the largest, and where */
+    uint32_t worst_x, worst_y;
+    double mean_half_width;
+    double seconds;                         /* of the render call */
+    uint32_t threads, rounds;
+} sf_film_summary;
+sf_film_summary sf_film_summarize(const sf_film *film);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* scene: triangle meshes over the caller's arrays, a camera, a background, and the plan of what
+ * rendering them needs.
+ *
+ * A scene is built by one thread (create, add meshes, set camera and background, commit) and is
+ * immutable once committed: any number of threads may then render it. Lengths are in scene
+ * units, radiance is linear RGB, scene-referred.
+ */
+#ifndef SUNFLECK_SCENE_H
+#define SUNFLECK_SCENE_H
+
+#include "sunfleck/base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct sf_scene sf_scene;
+
+/* A triangle mesh with one diffuse reflectance and one emission.
+ *
+ * The arrays stay the caller's: they must neither change nor go before the scene is destroyed.
+ * Embree reads them in place. It may read 4 bytes past the last vertex; where those could lie
+ * on another memory page (1 array in 1,000), the scene makes one copy instead, and
+ * sf_scene_info.copied_bytes says how much. */
+typedef struct sf_mesh {
+    const float *vertices;     /* vertex_count * 3, finite, |coordinate| <= 1e18 */
+    size_t vertex_count;       /* 3 .. 2^32 - 1 */
+    const uint32_t *triangles; /* triangle_count * 3, each < vertex_count */
+    size_t triangle_count;     /* 1 .. 2^32 - 1 */
+    float albedo[3];           /* diffuse reflectance, each in [0, 1]; default 0.5; both sides reflect */
+    float emission[3];         /* radiance, each in [0, 1e18]; default 0; only the side that
+                                  (v1 - v0) x (v2 - v0) points to emits */
+} sf_mesh;
+
+/* A mesh without arrays, albedo 0.5, no emission. */
+sf_mesh sf_mesh_default(void);
+
+/* A pinhole camera, or a thin lens where aperture_radius > 0. Row 0 of the image is the top,
+ * image right is forward x up. */
+typedef struct sf_camera {
+    float position[3];
+    float target[3];       /* not the position */
+    float up[3];           /* not along the line of sight; default (0, 1, 0) */
+    float vertical_fov;    /* degrees, in (0, 180); default 40 */
+    float aperture_radius; /* >= 0, scene units; default 0, a pinhole */
+    float focus_distance;  /* along the axis to the focal plane, > 0; default 0, through the target */
+} sf_camera;
+
+/* At (0, 0, 1), looking at the origin. */
+sf_camera sf_camera_default(void);
+
+#define SF_MAX_BOUNCES 64
+
+/* Creates an empty scene: black background, 5 bounces, the default camera.
+ * Returns SF_STATUS_BACKEND where Embree refuses a device. */
+sf_status sf_scene_create(sf_scene **scene, sf_error *error);
+
+/* Frees the scene; NULL is allowed. Not while it is being rendered. */
+void sf_scene_destroy(sf_scene *scene);
+
+/* Adds a mesh, after checking every value of it (one pass). Zero-area triangles are counted and
+ * left out of the lights; an emissive mesh of nothing else is refused. */
+sf_status sf_scene_add_mesh(sf_scene *scene, const sf_mesh *mesh, sf_error *error);
+
+sf_status sf_scene_set_camera(sf_scene *scene, const sf_camera *camera, sf_error *error);
+
+/* radiance: each in [0, 1e18]. */
+sf_status sf_scene_set_background(sf_scene *scene, const float radiance[3], sf_error *error);
+
+/* max_bounces: 0 (emission seen directly), 1 (direct light), … SF_MAX_BOUNCES. */
+sf_status sf_scene_set_max_bounces(sf_scene *scene, uint32_t max_bounces, sf_error *error);
+
+/* Builds the acceleration structure, the lights and the plan. Refuses an empty scene. A scene
+ * is committed once; after that every setter is refused. */
+sf_status sf_scene_commit(sf_scene *scene, sf_error *error);
+
+/* What a committed scene holds. */
+typedef struct sf_scene_info {
+    size_t mesh_count;
+    size_t triangle_count;
+    size_t light_count;           /* pieces that light is sampled from: triangles and rectangles */
+    size_t rectangle_light_count; /* of these, pairs of triangles sampled as one parallelogram */
+    size_t degenerate_count;      /* zero-area triangles */
+    size_t copied_bytes;          /* of arrays that could not be read in place */
+    float bounds_lower[3];
+    float bounds_upper[3];
+    uint64_t hash; /* of every value that decides the picture: equal scenes have equal hashes */
+} sf_scene_info;
+
+/* NULL is allowed for `error`; the scene must be committed. */
+sf_status sf_scene_get_info(const sf_scene *scene, sf_scene_info *info, sf_error *error);
+
+/* One use of sample dimensions by a stage: `count` coordinates of each path. */
+typedef enum sf_dimension_use {
+    SF_DIMENSION_PIXEL = 0, /* 2: position in the pixel */
+    SF_DIMENSION_LENS,      /* 2: position on the lens */
+    SF_DIMENSION_LIGHT,     /* 2: point on the light, for the vertex `bounce` */
+    SF_DIMENSION_CHOICE,    /* 1: which light, for the vertex `bounce` */
+    SF_DIMENSION_SURFACE    /* 2: direction off the surface, at the vertex `bounce` */
+} sf_dimension_use;
+
+typedef struct sf_plan_dimensions {
+    sf_dimension_use use;
+    uint32_t bounce; /* 1 = the first surface hit; 0 for pixel and lens */
+    uint32_t first;  /* the first of its dimensions among the path's */
+    uint32_t count;
+} sf_plan_dimensions;
+
+/* The stages a path may pass through, in order. A stage that is not in the plan is not run. */
+typedef enum sf_stage {
+    SF_STAGE_CAMERA = 0,   /* camera rays: pinhole */
+    SF_STAGE_LENS,         /* camera rays: thin lens, instead of the pinhole's */
+    SF_STAGE_INTERSECT,    /* nearest hits of camera rays */
+    SF_STAGE_MISS,         /* background radiance for rays that hit nothing */
+    SF_STAGE_EMISSION,     /* radiance of emissive surfaces that rays hit */
+    SF_STAGE_CHOOSE_LIGHT, /* one light of several */
+    SF_STAGE_LIGHT,        /* shadow rays to points on lights */
+    SF_STAGE_SURFACE,      /* surface-sampled rays between vertices */
+    SF_STAGE_LAST_SURFACE, /* surface-sampled rays at the last bounce, for the background or
+                              where there is no light to sample */
+    SF_STAGE_WEIGHT,       /* multiple importance sampling between light and surface rays */
+    SF_STAGE_COUNT
+} sf_stage;
+
+/* "camera", "lens", … ; never NULL. */
+const char *sf_stage_name(sf_stage stage);
+const char *sf_dimension_use_name(sf_dimension_use use);
+
+#define SF_PLAN_MAX_DIMENSIONS (2 + 3 * SF_MAX_BOUNCES)
+
+/* What a scene turned out to need, and what the renderer runs: nothing else. */
+typedef struct sf_plan {
+    uint32_t stages; /* bit (1 << sf_stage) of each stage that runs */
+    uint32_t max_bounces;
+    uint32_t dimensions_per_path;  /* sum of `count` below */
+    uint32_t dimension_group_count;
+    sf_plan_dimensions dimensions[SF_PLAN_MAX_DIMENSIONS];
+    uint32_t camera_rays;  /* per path: 1 */
+    uint32_t shadow_rays;  /* per path, at the most */
+    uint32_t surface_rays; /* per path, at the most */
+} sf_plan;
+
+/* The plan of a committed scene. */
+sf_status sf_scene_get_plan(const sf_scene *scene, sf_plan *plan, sf_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

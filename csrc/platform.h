@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* The one place for what C99 does not have: restrict hints, alignment, atomics, threads,
+ * clocks, the processor's features and its floating-point mode. GCC and Clang, POSIX. */
+#ifndef SUNFLECK_PLATFORM_H
+#define SUNFLECK_PLATFORM_H
+
+#include <pthread.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <time.h>
+
+#if defined(__x86_64__)
+#include <xmmintrin.h>
+#endif
+
+#define SF_RESTRICT restrict
+#define SF_ALIGNMENT 64
+#define SF_ALIGNED(T) __attribute__((aligned(SF_ALIGNMENT))) T
+
+/* Tells the compiler that the pointer is aligned to SF_ALIGNMENT bytes. */
+#define SF_ASSUME_ALIGNED(p) __builtin_assume_aligned((p), SF_ALIGNMENT)
+
+/* Promises that a loop's iterations write to distinct places (scatters through an index). */
+#if defined(__clang__)
+#define SF_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#else
+#define SF_INDEPENDENT _Pragma("GCC ivdep")
+#endif
+
+#define SF_PRINTF(text, first) __attribute__((format(printf, text, first)))
+
+/* Aligned heap memory; NULL when there is none. Freed with sf_aligned_free. */
+static inline void *sf_aligned_alloc(size_t bytes) {
+    void *memory = NULL;
+    if (bytes > SIZE_MAX - SF_ALIGNMENT) return NULL;
+    size_t rounded = (bytes + SF_ALIGNMENT - 1) / SF_ALIGNMENT * SF_ALIGNMENT;
+    return posix_memalign(&memory, SF_ALIGNMENT, rounded ? rounded : SF_ALIGNMENT) == 0 ? memory : NULL;
+}
+static inline void sf_aligned_free(void *memory) { free(memory); }
+
+/* A counter that threads advance together. */
+typedef struct sf_atomic_size {
+    size_t value;
+} sf_atomic_size;
+static inline size_t sf_atomic_fetch_add(sf_atomic_size *a, size_t step) {
+    return __atomic_fetch_add(&a->value, step, __ATOMIC_RELAXED);
+}
+static inline void sf_atomic_store(sf_atomic_size *a, size_t value) {
+    __atomic_store_n(&a->value, value, __ATOMIC_RELEASE);
+}
+static inline size_t sf_atomic_load(const sf_atomic_size *a) {
+    return __atomic_load_n(&a->value, __ATOMIC_ACQUIRE);
+}
+
+/* Seconds on a clock that never steps back. */
+static inline double sf_seconds_now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Sets flush-to-zero and denormals-are-zero, as Embree asks of threads that trace; returns the
+ * mode to restore. A no-op off x86. */
+static inline unsigned sf_flush_denormals(void) {
+#if defined(__x86_64__)
+    unsigned mode = _mm_getcsr();
+    _mm_setcsr(mode | 0x8040u);
+    return mode;
+#else
+    return 0;
+#endif
+}
+static inline void sf_restore_denormals(unsigned mode) {
+#if defined(__x86_64__)
+    _mm_setcsr(mode);
+#else
+    (void)mode;
+#endif
+}
+
+/* The number of processors this process may run on, at least 1. */
+unsigned sf_processor_count(void);
+
+#endif
