@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* points: patterns, rules that place n points in [0,1)^d.
+ *
+ * A point is a pure function of (pattern, options, seed, index, dimension): any part of a
+ * pattern can be made at any time, in any order, on any thread, with the same bits on every
+ * instruction-set level. Every function is thread-safe unless it says otherwise.
+ *
+ * A coordinate is a 32-bit word; the float is its top 24 bits, never 1. The double's top 32
+ * bits are that word too, and its further 21 bits continue it. Where a pattern has strata or
+ * elementary intervals whose borders are not multiples of 2^-24, the word is rounded so that the
+ * float still lies inside its own.
+ */
+#ifndef SUNFLECK_POINTS_H
+#define SUNFLECK_POINTS_H
+
+#include "sunfleck/base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define SF_SOBOL_MAX_DIMS 21201u  /* Joe & Kuo's table */
+#define SF_HALTON_MAX_DIMS 6542u  /* the primes below 2^16 */
+#define SF_POINTS_MAX_DIMS 65536u /* of the patterns without a table */
+
+typedef enum sf_pattern {
+    SF_PATTERN_UNIFORM = 0, /* centres of a regular grid; needs its total */
+    SF_PATTERN_RANDOM,      /* independent points */
+    SF_PATTERN_JITTERED,    /* a random point in each cell of a grid; needs its total */
+    SF_PATTERN_HALTON,      /* radical inverses in the first d primes */
+    SF_PATTERN_SOBOL,       /* Joe & Kuo's direction numbers, in the natural order of the index */
+    SF_PATTERN_COUNT
+} sf_pattern;
+
+/* How a deterministic pattern is randomized. */
+typedef enum sf_scramble {
+    SF_SCRAMBLE_DEFAULT = 0, /* owen for sobol, permuted for halton, none for the others */
+    SF_SCRAMBLE_NONE,        /* the plain pattern: the seed is not used (patterns that are random
+                                by nature draw on it all the same) */
+    SF_SCRAMBLE_PERMUTED,    /* halton: each digit, to infinity, by a random permutation of its place */
+    SF_SCRAMBLE_OWEN,        /* sobol: nested uniform scrambling by a hash (Burley 2020, with
+                                Vegdahl's 2021 constants) */
+    SF_SCRAMBLE_COUNT
+} sf_scramble;
+
+/* The names "uniform", "owen", … and a line about each; NULL beyond the last, so that they can
+ * be listed. SF_SCRAMBLE_DEFAULT is called "default". */
+const char *sf_pattern_name(sf_pattern pattern);
+const char *sf_pattern_description(sf_pattern pattern);
+const char *sf_scramble_name(sf_scramble scramble);
+const char *sf_scramble_description(sf_scramble scramble);
+
+/* The value called `name`; the error lists the names. */
+sf_status sf_pattern_find(const char *name, sf_pattern *pattern, sf_error *error);
+sf_status sf_scramble_find(const char *name, sf_scramble *scramble, sf_error *error);
+
+/* What a pattern can do: the largest dims and index + 1, whether it needs its total ahead, the
+ * scramble that SF_SCRAMBLE_DEFAULT stands for, and whether it takes the one asked about. */
+uint32_t sf_pattern_max_dims(sf_pattern pattern);
+uint64_t sf_pattern_max_count(sf_pattern pattern); /* UINT64_MAX: no limit but the index's type */
+int sf_pattern_needs_total(sf_pattern pattern);
+sf_scramble sf_pattern_default_scramble(sf_pattern pattern);
+int sf_pattern_takes_scramble(sf_pattern pattern, sf_scramble scramble);
+
+/* The nearest counts that the pattern takes at or below n and at or above it; 0 where there is
+ * none. Both are n where n itself is valid, as it always is for patterns that need no total.
+ * uniform and jittered take the product of `dims` integers of which the largest is at most
+ * twice the smallest, up to 2^32: ("jittered", 2, 997) gives 992 = 32 x 31 and 999 = 37 x 27. */
+sf_status sf_pattern_valid_counts(sf_pattern pattern, uint32_t dims, uint64_t n, uint64_t *below, uint64_t *above,
+                                  sf_error *error);
+
+/* The sides of the grid that uniform and jittered use for n cells: dims integers with product n,
+ * none above twice the least, the most even such, in falling order. Refuses another n, naming
+ * the nearest valid counts. */
+sf_status sf_grid_sides(uint64_t n, uint32_t dims, uint32_t *sides, sf_error *error);
+
+typedef struct sf_points_options {
+    sf_pattern pattern;   /* default sobol */
+    sf_scramble scramble; /* default SF_SCRAMBLE_DEFAULT: the pattern's own */
+    uint32_t dims;        /* 1 .. sf_pattern_max_dims; default 2 */
+    uint64_t seed;        /* any; default 0 */
+    uint64_t first;       /* index of the first point; first + count at most sf_pattern_max_count;
+                             default 0 */
+    uint64_t total;       /* how many points there will be, for patterns that need to know: first +
+                             count at most total; 0 (default): first + count */
+    uint32_t pad;         /* 0 (default): one pattern of `dims` dimensions. 2 or 4: sets of that many
+                             dimensions side by side, each with a seed and a shuffled order of its
+                             own, so that they are independent of each other */
+    uint32_t threads;     /* 1 (default) ..; 0: one for each processor. Changes no bit */
+} sf_points_options;
+
+sf_points_options sf_points_options_default(void);
+
+/* Fills `out` with points first .. first + count - 1.
+ *
+ * out     count * dims values, row-major. f32: in [0,1), 24 bits; f64: in [0,1), 53 bits; u32:
+ *         the 32-bit words. count = 0 is allowed and touches nothing
+ *
+ * Refuses bad options with a message before any work. */
+sf_status sf_points_fill_f32(const sf_points_options *options, size_t count, float *out, sf_error *error);
+sf_status sf_points_fill_f64(const sf_points_options *options, size_t count, double *out, sf_error *error);
+sf_status sf_points_fill_u32(const sf_points_options *options, size_t count, uint32_t *out, sf_error *error);
+
+/* A pattern with its tables made, for those who ask for a few points at a time: sf_points_fill_…
+ * makes them anew each call, 10 ms for 21,201 dimensions of Sobol. `first` of the options is
+ * not used. Immutable once made, so that threads may share it. */
+typedef struct sf_point_set sf_point_set;
+
+sf_status sf_point_set_create(const sf_points_options *options, sf_point_set **set, sf_error *error);
+void sf_point_set_destroy(sf_point_set *set); /* NULL is legal */
+
+/* As sf_points_fill_…, from index `first`. A pattern that needs its total must have been given it. */
+sf_status sf_point_set_fill_f32(const sf_point_set *set, uint64_t first, size_t count, float *out, sf_error *error);
+sf_status sf_point_set_fill_f64(const sf_point_set *set, uint64_t first, size_t count, double *out, sf_error *error);
+sf_status sf_point_set_fill_u32(const sf_point_set *set, uint64_t first, size_t count, uint32_t *out, sf_error *error);
+
+/* ---- one coordinate at a time ----
+ *
+ * Each equals the fill with the default scramble, pad 0 and the same seed. The preconditions are
+ * asserted. */
+
+float sf_random_sample(uint64_t index, uint32_t dimension, uint64_t seed);
+
+/* `sides` as sf_grid_sides gives them, index below their product, dimension < dims. */
+float sf_uniform_sample(uint64_t index, uint32_t dimension, uint32_t dims, const uint32_t *sides);
+float sf_jittered_sample(uint64_t index, uint32_t dimension, uint64_t seed, uint32_t dims, const uint32_t *sides);
+
+float sf_halton_sample(uint64_t index, uint32_t dimension, uint64_t seed); /* dimension < SF_HALTON_MAX_DIMS */
+float sf_sobol_sample(uint32_t index, uint32_t dimension, uint64_t seed);  /* dimension < SF_SOBOL_MAX_DIMS */
+
+/* The 32-bit words of the unscrambled sequences. */
+uint32_t sf_sobol_bits(uint32_t index, uint32_t dimension);
+uint32_t sf_halton_bits(uint64_t index, uint32_t dimension);
+
+/* ---- the parts, for kernels of one's own ---- */
+
+/* The 32 direction numbers of a dimension: column k is what bit k of the index XORs into the
+ * point, as a fraction of 2^32 (column 0 is 2^31 in every dimension). */
+void sf_sobol_matrix(uint32_t dimension, uint32_t columns[32]);
+
+/* The key with which a dimension of a pattern of that seed is scrambled. */
+static inline uint32_t sf_owen_seed(uint64_t seed, uint32_t dimension) {
+    return (uint32_t)(sf_hash64(seed, dimension) >> 32);
+}
+
+/* Owen's nested uniform scrambling of a word given and returned with its bits reversed: a bit is
+ * flipped by a hash of the seed and the bits below it. Vegdahl 2021, "Building a Better LK Hash":
+ * x ^= x * even and x * odd carry only upwards, so that the map is nested. */
+static inline uint32_t sf_owen_hash32(uint32_t reversed, uint32_t seed) {
+    reversed ^= reversed * 0x3d20adeau;
+    reversed += seed;
+    reversed *= seed >> 16 | 1u;
+    reversed ^= reversed * 0x05526c56u;
+    reversed ^= reversed * 0x53a22864u;
+    return reversed;
+}
+
+/* The same of a word in its usual order. Also shuffles an index: every aligned block of 2^k
+ * indices maps onto an aligned block of 2^k (Burley 2020, "Practical Hash-based Owen
+ * Scrambling"). */
+static inline uint32_t sf_owen_scramble32(uint32_t word, uint32_t seed) {
+    return sf_reverse_bits32(sf_owen_hash32(sf_reverse_bits32(word), seed));
+}
+
+/* The scrambled float of a word given with its bits reversed. */
+static inline float sf_owen_float(uint32_t reversed, uint32_t seed) {
+    return sf_float_from_bits(sf_reverse_bits32(sf_owen_hash32(reversed, seed)));
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
