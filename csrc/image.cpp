@@ -1,0 +1,231 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "sunfleck/image.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fcntl.h>
+#include <strings.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+namespace {
+
+// Rows that are converted and handed over at a time: two of the 16-row blocks that EXR
+// compresses, so that memory stays a few rows whatever the film's size.
+constexpr uint32_t block_rows = 32;
+
+// What is thrown here and turned into a status at the C boundary.
+struct failure {
+    sf_status status;
+    std::string message;
+};
+
+[[noreturn]] void fail_io(const std::string &path, const std::string &reason) {
+    throw failure{SF_STATUS_IO, "cannot write " + path + ": " + reason};
+}
+
+sf_status report(sf_error *error, sf_status status, const char *message) noexcept {
+    if (error) {
+        error->status = status;
+        std::snprintf(error->message, sizeof error->message, "%s", message);
+    }
+    return status;
+}
+
+// A new file beside `path`, that becomes `path` by commit() and is removed otherwise.
+class file_beside {
+public:
+    explicit file_beside(const std::string &path) : path_(path) {
+        const size_t slash = path.rfind('/');
+        const std::string folder = slash == std::string::npos ? std::string() : path.substr(0, slash + 1);
+        const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
+        uint64_t key = sf_hash64(static_cast<uint64_t>(now), static_cast<uint64_t>(getpid()));
+
+        // O_EXCL makes the name ours; two writers that draw the same one draw again.
+        int descriptor = -1;
+        do {
+            std::array<char, 40> name;
+            std::snprintf(name.data(), name.size(), ".sunfleck-%016llx", static_cast<unsigned long long>(key));
+            beside_ = folder + name.data();
+            descriptor = open(beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+            key = sf_mix64(key + 1);
+        } while (descriptor < 0 && errno == EEXIST);
+        if (descriptor < 0) fail_io(path_, std::strerror(errno));
+
+        stream_ = fdopen(descriptor, "wb");
+        if (!stream_) {
+            const int reason = errno;
+            close(descriptor);
+            unlink(beside_.c_str());
+            fail_io(path_, std::strerror(reason));
+        }
+    }
+    file_beside(const file_beside &) = delete;
+    file_beside &operator=(const file_beside &) = delete;
+    ~file_beside() {
+        if (stream_) std::fclose(stream_);
+        if (!committed_) unlink(beside_.c_str());
+    }
+
+    FILE *stream() const { return stream_; }
+
+    // Renames only what has reached the disk: a full one may show as late as fsync or close.
+    void commit() {
+        const bool flushed = std::fflush(stream_) == 0 && !std::ferror(stream_) && fsync(fileno(stream_)) == 0;
+        const int flush_reason = errno;
+        const bool closed = std::fclose(stream_) == 0;
+        stream_ = nullptr;
+        if (!flushed) fail_io(path_, std::strerror(flush_reason));
+        if (!closed || std::rename(beside_.c_str(), path_.c_str()) != 0) fail_io(path_, std::strerror(errno));
+        committed_ = true;
+    }
+
+private:
+    std::string path_, beside_;
+    FILE *stream_ = nullptr;
+    bool committed_ = false;
+};
+
+// Rows first .. first + count - 1 of a channel as floats, into every `step`-th place of `out`.
+void gather(const sf_channel &channel, uint32_t width, uint32_t first, uint32_t count, size_t step, float *out) {
+    for (uint32_t row = first; row < first + count; ++row) {
+        const char *pixel = static_cast<const char *>(channel.data) + row * channel.row_stride;
+        for (uint32_t column = 0; column < width; ++column, pixel += channel.pixel_stride, out += step) {
+            switch (channel.type) {
+                case SF_CHANNEL_FLOAT32: std::memcpy(out, pixel, sizeof *out); break;
+                case SF_CHANNEL_UINT32: {
+                    uint32_t value;
+                    std::memcpy(&value, pixel, sizeof value);
+                    *out = static_cast<float>(value);
+                    break;
+                }
+                case SF_CHANNEL_UINT8: *out = static_cast<float>(*reinterpret_cast<const uint8_t *>(pixel)); break;
+            }
+        }
+    }
+}
+
+// The sRGB transfer function (IEC 61966-2-1), then rounding to the nearest of 256 codes. What
+// is not above 0, NaN included, gives 0.
+uint8_t encode_srgb(float linear) {
+    if (!(linear > 0.0f)) return 0;
+    const float v = std::min(linear, 1.0f);
+    const float encoded = v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f;
+    return static_cast<uint8_t>(encoded * 255.0f + 0.5f);
+}
+
+enum class format { exr, png };
+
+format format_of(const char *path) {
+    const char *dot = std::strrchr(path, '.');
+    if (dot && strcasecmp(dot, ".exr") == 0) return format::exr;
+    if (dot && strcasecmp(dot, ".png") == 0) return format::png;
+    throw failure{SF_STATUS_INVALID_VALUE, std::string("path is \"") + path + "\"; it must end in .exr or .png"};
+}
+
+// The channels that the format keeps: EXR all, PNG the first of the names R, G and B.
+std::vector<sf_channel> channels_of(const sf_film *film, format kind) {
+    std::vector<sf_channel> channels;
+    for (size_t i = 0; i < sf_film_channel_count(film); ++i) {
+        const sf_channel channel = sf_film_channel(film, i);
+        const bool color = std::strlen(channel.name) == 1 && std::strchr("RGB", channel.name[0]);
+        if (kind == format::exr || color) channels.push_back(channel);
+    }
+    return channels;
+}
+
+OIIO::ImageSpec describe(const sf_film *film, const std::vector<sf_channel> &channels, format kind) {
+    OIIO::ImageSpec spec(static_cast<int>(sf_film_width(film)), static_cast<int>(sf_film_height(film)),
+                         static_cast<int>(channels.size()),
+                         kind == format::exr ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
+    spec.channelnames.clear();
+    spec.alpha_channel = -1;
+    for (const sf_channel &channel : channels) {
+        if (std::strcmp(channel.name, "A") == 0) spec.alpha_channel = static_cast<int>(spec.channelnames.size());
+        spec.channelnames.emplace_back(channel.name);
+    }
+    spec.attribute("oiio:ColorSpace", kind == format::exr ? "Linear" : "sRGB");
+    if (kind == format::exr) {
+        spec.attribute("compression", "zip");
+        for (size_t i = 0; i < sf_film_attribute_count(film); ++i) {
+            const sf_attribute attribute = sf_film_attribute(film, i);
+            spec.attribute(std::string("sunfleck:") + attribute.name, attribute.text);
+        }
+    }
+    return spec;
+}
+
+// Hands the channels over a few rows at a time. False where OpenImageIO refused.
+bool write_rows(OIIO::ImageOutput &output, const std::vector<sf_channel> &channels, uint32_t width, uint32_t height,
+                format kind) {
+    std::vector<float> linear(size_t{block_rows} * width * channels.size());
+    std::vector<uint8_t> encoded(kind == format::png ? linear.size() : 0);
+    for (uint32_t row = 0; row < height; row += block_rows) {
+        const uint32_t count = std::min(block_rows, height - row);
+        for (size_t i = 0; i < channels.size(); ++i)
+            gather(channels[i], width, row, count, channels.size(), linear.data() + i);
+
+        OIIO::TypeDesc type = OIIO::TypeDesc::FLOAT;
+        const void *data = linear.data();
+        if (kind == format::png) {
+            std::transform(linear.begin(), linear.end(), encoded.begin(), encode_srgb);
+            type = OIIO::TypeDesc::UINT8;
+            data = encoded.data();
+        }
+        if (!output.write_scanlines(static_cast<int>(row), static_cast<int>(row + count), 0, type, data)) return false;
+    }
+    return true;
+}
+
+void write(const sf_film *film, const std::string &path) {
+    const format kind = format_of(path.c_str());
+    const std::vector<sf_channel> channels = channels_of(film, kind);
+    const auto output = OIIO::ImageOutput::create(kind == format::exr ? "exr" : "png");
+    if (!output) throw failure{SF_STATUS_BACKEND, "OpenImageIO: " + OIIO::geterror()};
+
+    file_beside file(path);
+    OIIO::Filesystem::IOFile proxy(file.stream(), OIIO::Filesystem::IOProxy::Write);
+    if (!output->set_ioproxy(&proxy)) throw failure{SF_STATUS_BACKEND, "OpenImageIO: " + output->geterror()};
+    const bool written = output->open(path, describe(film, channels, kind)) &&
+                         write_rows(*output, channels, sf_film_width(film), sf_film_height(film), kind);
+    // Closed in every case: it may still write through the proxy, which must outlive that.
+    const bool closed = output->close();
+    if (!written || !closed) {
+        const std::string reason = output->geterror();
+        fail_io(path, reason.empty() ? "OpenImageIO gives no reason" : reason);
+    }
+    file.commit();
+}
+
+}  // namespace
+
+sf_status sf_image_write(const sf_film *film, const char *path, sf_error *error) {
+    if (!film) return report(error, SF_STATUS_INVALID_VALUE, "film is NULL; it must be one that sf_render made");
+    if (!path) return report(error, SF_STATUS_INVALID_VALUE, "path is NULL; it must end in .exr or .png");
+    try {
+        write(film, path);
+        return SF_STATUS_OK;
+    } catch (const failure &f) {
+        return report(error, f.status, f.message.c_str());
+    } catch (const std::bad_alloc &) {
+        return report(error, SF_STATUS_OUT_OF_MEMORY, "out of memory while writing an image");
+    } catch (const std::exception &e) {
+        return report(error, SF_STATUS_BACKEND, e.what());
+    } catch (...) {
+        return report(error, SF_STATUS_BACKEND, "OpenImageIO threw something unknown");
+    }
+}
