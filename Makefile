@@ -1,0 +1,86 @@
+# SPDX-FileCopyrightText: 2026 The Sunfleck developers
+# SPDX-License-Identifier: Apache-2.0
+
+# Each target installs what it needs and is missing; a second run does only what has changed.
+
+PYTHON ?= python3
+MITSUBA_PYTHON = build/mitsuba/bin/python
+
+build_packages = build-essential cmake ninja-build python3-dev python3-venv libembree-dev
+demo_packages = $(build_packages) assimp-testmodels
+test_packages = $(demo_packages) libcmocka-dev libopenimageio-dev pkg-config
+
+sources = CMakeLists.txt pyproject.toml $(shell find cmake csrc python -type f -not -name '*.pyc')
+venv = .venv/bin/python
+
+.PHONY: help demo test lint bench clean packages-demo packages-test build-c
+.DELETE_ON_ERROR:
+.NOTPARALLEL: # packages come first; CMake and pip use all processors themselves
+
+help:
+	@echo "make demo   renders pictures to a stated tolerance into out/"
+	@echo "make test   builds everything, runs the C and the Python tests"
+	@echo "make lint   ruff, mypy --strict, warnings as errors, clang-format where there is one"
+	@echo "make bench  measures speed and accuracy; figures go to standard output"
+	@echo "make clean  removes build/, out/, dist/ and .venv/"
+
+demo: packages-demo .venv/.demo
+	$(venv) examples/demo.py
+
+test: packages-test build-c .venv/.test
+	ctest --test-dir build --output-on-failure
+	$(venv) -m pytest
+
+lint: packages-test .venv/.test
+	.venv/bin/ruff check .
+	.venv/bin/ruff format --check .
+	.venv/bin/mypy
+	CMAKE_GENERATOR=Ninja cmake -S . -B build/lint -D CMAKE_BUILD_TYPE=Release -D CMAKE_COMPILE_WARNING_AS_ERROR=ON
+	cmake --build build/lint
+	scripts/check-format.sh
+
+bench: packages-demo .venv/.demo build/reference/penumbra_256.npy build/reference/cornell_256.npy
+	$(venv) bench/render.py
+	$(venv) bench/startup.py
+
+clean:
+	rm -rf build out dist .venv .pytest_cache .mypy_cache .ruff_cache
+
+packages-demo:
+	@scripts/install-packages.sh $(demo_packages)
+
+packages-test:
+	@scripts/install-packages.sh $(test_packages)
+
+# The generator is taken from the environment only where build/ is new.
+build-c: packages-test
+	CMAKE_GENERATOR=Ninja cmake -S . -B build -D CMAKE_BUILD_TYPE=Release
+	cmake --build build --parallel
+
+.venv/.created:
+	$(PYTHON) -m venv .venv
+	touch $@
+
+# The wheel is built once and installed with what each target needs besides.
+build/wheel/.built: $(sources) | .venv/.created
+	rm -rf build/wheel
+	$(venv) -m pip wheel -q --no-deps --wheel-dir build/wheel .
+	touch $@
+
+.venv/.demo: build/wheel/.built
+	$(venv) -m pip install -q --force-reinstall --no-deps build/wheel/*.whl
+	$(venv) -m pip install -q build/wheel/*.whl
+	touch $@
+
+.venv/.test: .venv/.demo
+	$(venv) -m pip install -q "$$(echo build/wheel/*.whl)[test]"
+	touch $@
+
+# Converged references, by Mitsuba in an environment of its own that sees this package.
+$(MITSUBA_PYTHON):
+	$(PYTHON) -m venv build/mitsuba
+	$(MITSUBA_PYTHON) -m pip install -q mitsuba
+
+build/reference/%_256.npy: | .venv/.demo $(MITSUBA_PYTHON)
+	PYTHONPATH=$$($(venv) -c 'import sysconfig; print(sysconfig.get_path("platlib"))') \
+	    $(MITSUBA_PYTHON) bench/reference.py $*
