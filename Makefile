@@ -31,7 +31,7 @@ test: packages-test build-c .venv/.test
 	ctest --test-dir build --output-on-failure
 	$(venv) -m pytest
 
-lint: packages-test .venv/.test
+lint: packages-test .venv/.lint
 	.venv/bin/ruff check .
 	.venv/bin/ruff format --check .
 	.venv/bin/mypy
@@ -74,6 +74,10 @@ build/wheel/.built: $(sources) | .venv/.created
 
 .venv/.test: .venv/.demo
 	$(venv) -m pip install -q "$$(echo build/wheel/*.whl)[test]"
+	touch $@
+
+.venv/.lint: .venv/.test
+	$(venv) -m pip install -q "$$(echo build/wheel/*.whl)[lint]"
 	touch $@
 
 # Converged references, by Mitsuba in an environment of its own that sees this package.
