@@ -4,7 +4,6 @@
 # Each target installs what it needs and is missing; a second run does only what has changed.
 
 PYTHON ?= python3
-MITSUBA_PYTHON = build/mitsuba/bin/python
 
 build_packages = build-essential cmake ninja-build python3-dev python3-venv libembree-dev
 demo_packages = $(build_packages) assimp-testmodels
@@ -12,6 +11,10 @@ test_packages = $(demo_packages) libcmocka-dev libopenimageio-dev pkg-config
 
 sources = CMakeLists.txt pyproject.toml $(shell find cmake csrc python -type f -not -name '*.pyc')
 venv = .venv/bin/python
+
+# Mitsuba, for bench, in an environment of its own that sees this package.
+MITSUBA_PYTHON = build/mitsuba/bin/python
+with_mitsuba = PYTHONPATH=$$($(venv) -c 'import sysconfig; print(sysconfig.get_path("platlib"))') $(MITSUBA_PYTHON)
 
 .PHONY: help demo test lint bench clean packages-demo packages-test build-c
 .DELETE_ON_ERROR:
@@ -40,7 +43,7 @@ lint: packages-test .venv/.lint
 	scripts/check-format.sh
 
 bench: packages-demo .venv/.demo build/reference/penumbra_256.npy build/reference/cornell_256.npy
-	$(venv) bench/render.py
+	$(with_mitsuba) bench/render.py
 	$(venv) bench/startup.py
 
 clean:
@@ -80,11 +83,9 @@ build/wheel/.built: $(sources) | .venv/.created
 	$(venv) -m pip install -q "$$(echo build/wheel/*.whl)[lint]"
 	touch $@
 
-# Converged references, by Mitsuba in an environment of its own that sees this package.
 $(MITSUBA_PYTHON):
 	$(PYTHON) -m venv build/mitsuba
 	$(MITSUBA_PYTHON) -m pip install -q mitsuba
 
 build/reference/%_256.npy: | .venv/.demo $(MITSUBA_PYTHON)
-	PYTHONPATH=$$($(venv) -c 'import sysconfig; print(sysconfig.get_path("platlib"))') \
-	    $(MITSUBA_PYTHON) bench/reference.py $*
+	$(with_mitsuba) bench/reference.py $*

@@ -26,6 +26,7 @@ from typing import Any
 
 import mitsuba as mi
 import numpy as np
+
 import sunfleck as sf
 
 PASS_SPP = 256  # a square, as multijitter wants; at 256 x 256 a pass takes under 1 GB

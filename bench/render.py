@@ -18,8 +18,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import sunfleck as sf
 from measure import ROOT, describe_build, describe_machine, state
+
+import sunfleck as sf
 
 try:
     import reference as peer
