@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* elementary: the sines, logarithms and exponentials that samples are made of.
+ *
+ * They are the library's own so that no libm decides a picture: +, -, *, / and integer
+ * operations in a fixed order, without branches, so that a loop over them vectorizes and gives
+ * the same bits on every instruction-set level (given -ffp-contract=off). Thread-safe.
+ *
+ * Angles are in turns, [0,1), as the unit square gives them: the reduction is then exact, where
+ * one by pi rounds. float: minimax-like polynomials, interpolated at Chebyshev nodes to less
+ * than 0.3 of 2^-24; errors over all floats of the stated domain (2^24 and more) are measured
+ * by tests/c/test_elementary.c. double: Taylor series, a few ulp.
+ */
+#ifndef SUNFLECK_ELEMENTARY_H
+#define SUNFLECK_ELEMENTARY_H
+
+#include <math.h>
+#include <string.h>
+
+#include "sunfleck/base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define SF_PI 3.14159265358979323846
+#define SF_PI_F 3.14159265358979323846f
+#define SF_UNIT_MAX 0x1.fffffffffffffp-1 /* the largest double below 1 */
+#define SF_UNIT_MAX_F 0x1.fffffep-1f     /* the largest float below 1 */
+
+/* x brought into [0,1): what lies outside goes to the nearer end, NaN to 0. */
+static inline float sf_unit_clamp(float x) {
+    float low = x > 0.0f ? x : 0.0f;
+    return low < SF_UNIT_MAX_F ? low : SF_UNIT_MAX_F;
+}
+
+/* The sine and cosine of r turns, |r| <= 1/8. 6r is exact for multiples of 2^-24 (21 + 2 bits),
+ * so that only the small remainder of the series rounds. */
+static inline void sf_sincos_2pi_octant(float r, float *sine, float *cosine) {
+    float t = r * r;
+    float p = 0x1.21fb52p-2f + t * (-0x1.4abbbap+5f + t * (0x1.465ec4p+6f + t * -0x1.2d9b4p+6f));
+    float q = -0x1.3bd3ccp+4f + t * (0x1.03c1eap+6f + t * (-0x1.55cb98p+6f + t * 0x1.db6492p+5f));
+    *sine = r * 6.0f + r * p;
+    *cosine = 1.0f + t * q;
+}
+
+/* The sine and cosine of 2 pi u, u in [0,1]. Exact at the multiples of 1/4. */
+static inline void sf_sincos_2pi(float u, float *sine, float *cosine) {
+    /* Take off the nearest quarter turn, which is exact; turn the result back by it. */
+    int32_t quarter = ((int32_t)(u * 8.0f) + 1) >> 1;
+    float s, c;
+    sf_sincos_2pi_octant(u - (float)quarter * 0.25f, &s, &c);
+    float first = quarter & 1 ? c : s, second = quarter & 1 ? s : c;
+    *sine = quarter & 2 ? -first : first;
+    *cosine = (quarter + 1) & 2 ? -second : second;
+}
+
+/* The arctangent of z in turns, |z| <= 1: [-1/8, 1/8]. */
+static inline float sf_atan_turns(float z) {
+    float t = z * z;
+    float p = 0x1.29bb9cp-7f + t * (-0x1.3c94d8p-8f + t * (0x1.b58f84p-10f + t * -0x1.1be6ccp-12f));
+    p = 0x1.7cc1b4p-9f +
+        t * (-0x1.b2992ep-5f +
+             t * (0x1.04bcp-5f + t * (-0x1.73d7eap-6f + t * (0x1.1d1236p-6f + t * (-0x1.b37436p-7f + t * p)))));
+    return z * 0.125f + (z * 0.03125f + z * p); /* 5/32 = 1/8 + 1/32: exact products */
+}
+
+/* The inverse of sf_sincos_2pi: the angle of (x, y) in turns, [0,1); 0 for the origin. */
+static inline float sf_angle_2pi(float y, float x) {
+    float ax = fabsf(x), ay = fabsf(y);
+    int steep = ay > ax;
+    float low = steep ? ax : ay, high = steep ? ay : ax;
+    float a = sf_atan_turns(low / (high > 0.0f ? high : 1.0f));
+    a = steep ? 0.25f - a : a;
+    a = x < 0.0f ? 0.5f - a : a;
+    a = y < 0.0f ? 1.0f - a : a;
+    return a < SF_UNIT_MAX_F ? a : SF_UNIT_MAX_F;
+}
+
+/* log x, x positive, finite and normal. */
+static inline float sf_log(float x) {
+    /* x = 2^e (1 + f) with 1 + f in [sqrt(1/2), sqrt 2); 0x3f3504f3 is sqrt(1/2). */
+    int32_t bits, mantissa;
+    memcpy(&bits, &x, 4);
+    bits -= 0x3f3504f3;
+    mantissa = (bits & 0x007fffff) + 0x3f3504f3;
+    float e = (float)(bits >> 23), f;
+    memcpy(&f, &mantissa, 4);
+    f -= 1.0f;
+    float p = -0x1.fffffep-2f +
+              f * (0x1.555554p-2f +
+                   f * (-0x1.00020cp-2f +
+                        f * (0x1.99a012p-3f +
+                             f * (-0x1.548382p-3f +
+                                  f * (0x1.22ea5ap-3f +
+                                       f * (-0x1.0cda32p-3f + f * (0x1.048f72p-3f + f * -0x1.3a4ff6p-4f)))))));
+    /* ln 2 in two parts, the first of 9 bits, so that its product with e is exact. */
+    return e * 0x1.63p-1f + (f + (f * f * p + e * -0x1.bd0106p-13f));
+}
+
+/* log(1 - s), s in [0,1): finite everywhere, and as accurate for the smallest s. */
+static inline float sf_log1m(float s) {
+    float v = 1.0f - s, lost = (1.0f - v) - s; /* exact; log(v + lost) = log v + lost, nearly */
+    return sf_log(v) + lost;
+}
+
+/* exp(x) = 2^k (1 + p): k, 2^k and p = exp(f) - 1 of the remainder, |f| <= log(2) / 2. */
+static inline float sf_exp_split(float x, float *power) {
+    float scaled = x * 0x1.715476p+0f;
+    int32_t k = (int32_t)(scaled + (scaled < 0.0f ? -0.5f : 0.5f));
+    float f = (x - (float)k * 0x1.63p-1f) - (float)k * -0x1.bd0106p-13f;
+    int32_t bits = (k + 127) << 23;
+    memcpy(power, &bits, 4);
+    float p = 0.5f + f * (0x1.555556p-3f +
+                          f * (0x1.5554eap-5f + f * (0x1.1110ep-7f + f * (0x1.6d4316p-10f + f * 0x1.a124e4p-13f))));
+    return f + f * f * p;
+}
+
+/* exp x: 0 below -87, infinity above 88. */
+static inline float sf_exp(float x) {
+    float inside = x < -87.0f ? -87.0f : x > 88.0f ? 88.0f : x, power;
+    float p = sf_exp_split(inside, &power), value = power + power * p;
+    return x < -87.0f ? 0.0f : x > 88.0f ? (float)INFINITY : value;
+}
+
+/* exp(x) - 1 without cancellation near 0: -1 below -87, infinity above 88. */
+static inline float sf_expm1(float x) {
+    float inside = x < -87.0f ? -87.0f : x > 88.0f ? 88.0f : x, power;
+    float p = sf_exp_split(inside, &power), value = (power - 1.0f) + power * p;
+    return x < -87.0f ? -1.0f : x > 88.0f ? (float)INFINITY : value;
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* mapping, the directions: sphere, hemisphere, cosine hemisphere, and the frame that turns them
+ * to a normal. Included by mapping.h, whose comment holds what the triples have in common. */
+#ifndef SUNFLECK_MAPPING_SPHERE_H
+#define SUNFLECK_MAPPING_SPHERE_H
+
+#include "sunfleck/mapping_plane.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The pole is +z; the lecture's is +y: its (x, y, z) are our (x, z, y). Lengths are 1 within
+ * 2 ulp. Every pdf is per solid angle; a direction given to pdf or invert has length 1. */
+
+/* The direction of height z and distance `ring` from the axis, at s turns from +x. */
+static inline void sf_direction(float s, float ring, float z, float w[3]) {
+    float sine, cosine;
+    sf_sincos_2pi(s, &sine, &cosine);
+    w[0] = ring * cosine;
+    w[1] = ring * sine;
+    w[2] = z;
+}
+
+/* Uniform over the sphere: z = 1 - 2t, ring 2 sqrt(t (1 - t)). pdf: 1 / (4 pi). */
+static inline void sf_sphere_sample(float s, float t, float w[3]) {
+    sf_direction(s, 2.0f * sqrtf(t * (1.0f - t)), 1.0f - 2.0f * t, w);
+}
+static inline float sf_sphere_pdf(const float w[3]) {
+    (void)w;
+    return 0.25f / SF_PI_F;
+}
+static inline void sf_sphere_invert(const float w[3], float u[2]) {
+    /* t = (1 - z) / 2; above the equator as x^2 + y^2 = 4t (1 - t), which does not cancel. */
+    float square = w[0] * w[0] + w[1] * w[1], z = fabsf(w[2]), near = 0.5f * square / (1.0f + z);
+    u[0] = sf_angle_2pi(w[1], w[0]);
+    u[1] = sf_unit_clamp(w[2] > 0.0f ? near : 1.0f - near);
+}
+
+/* Uniform over the hemisphere z >= 0: z = t. pdf: 1 / (2 pi). */
+static inline void sf_hemisphere_sample(float s, float t, float w[3]) {
+    sf_direction(s, sqrtf((1.0f - t) * (1.0f + t)), t, w);
+}
+static inline float sf_hemisphere_pdf(const float w[3]) { return w[2] >= 0.0f ? 0.5f / SF_PI_F : 0.0f; }
+static inline void sf_hemisphere_invert(const float w[3], float u[2]) {
+    u[0] = sf_angle_2pi(w[1], w[0]);
+    u[1] = sf_unit_clamp(w[2]);
+}
+
+/* Cosine-weighted hemisphere: z = sqrt(t). pdf: z / pi, 0 on the horizon (t = 0). */
+static inline void sf_cosine_hemisphere_sample(float s, float t, float w[3]) {
+    sf_direction(s, sqrtf(1.0f - t), sqrtf(t), w);
+}
+static inline float sf_cosine_hemisphere_pdf(const float w[3]) {
+    return w[2] > 0.0f ? w[2] * (1.0f / SF_PI_F) : 0.0f;
+}
+static inline void sf_cosine_hemisphere_invert(const float w[3], float u[2]) {
+    u[0] = sf_angle_2pi(w[1], w[0]);
+    u[1] = sf_unit_clamp(w[2] > 0.0f ? w[2] * w[2] : 0.0f);
+}
+
+/* Two directions that make a right-handed orthonormal frame with the unit normal n, so that
+ * x tangent + y bitangent + z n turns the pole to n. Duff et al. 2017, "Building an Orthonormal
+ * Basis, Revisited", without branches; orthonormal within 4 ulp everywhere, at both poles and
+ * beside them. */
+static inline void sf_frame_from_normal(const float n[3], float tangent[3], float bitangent[3]) {
+    float sign = copysignf(1.0f, n[2]), a = -1.0f / (sign + n[2]), b = n[0] * n[1] * a;
+    tangent[0] = 1.0f + sign * (n[0] * n[0] * a);
+    tangent[1] = sign * b;
+    tangent[2] = -sign * n[0];
+    bitangent[0] = b;
+    bitangent[1] = sign + n[1] * n[1] * a;
+    bitangent[2] = -n[1];
+}
+
+/* x tangent + y bitangent + z normal. */
+static inline void sf_frame_to_world(const float tangent[3], const float bitangent[3], const float normal[3],
+                                     const float local[3], float world[3]) {
+    for (int k = 0; k < 3; ++k)
+        world[k] = (local[0] * tangent[k] + local[1] * bitangent[k]) + local[2] * normal[k];
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
