@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include <nanobind/stl/string.h>
+
+#include <nanobind/stl/pair.h>
+#include <string>
+#include <utility>
+
+#include "bind.h"
+#include "sunfleck/points.h"
+
+namespace {
+
+sf_pattern find_pattern(const std::string &name) {
+    sf_pattern pattern;
+    sf_error error;
+    raise_unless_ok(sf_pattern_find(name.c_str(), &pattern, &error), error);
+    return pattern;
+}
+
+sf_scramble find_scramble(const std::string &name) {
+    sf_scramble scramble;
+    sf_error error;
+    raise_unless_ok(sf_scramble_find(name.c_str(), &scramble, &error), error);
+    return scramble;
+}
+
+template <class T, sf_status (*Fill)(const sf_points_options *, size_t, T *, sf_error *)>
+void fill(nb::ndarray<T, nb::ndim<2>, nb::c_contig, nb::device::cpu> out, const std::string &pattern,
+          const std::string &scramble, uint32_t dims, uint64_t seed, uint64_t first, uint32_t threads) {
+    sf_points_options options = sf_points_options_default();
+    options.pattern = find_pattern(pattern);
+    options.scramble = find_scramble(scramble);
+    options.dims = dims;
+    options.seed = seed;
+    options.first = first;
+    options.threads = threads;
+    if (out.shape(1) != dims) throw nb::value_error("out must have a column for each dimension");
+    call([&](sf_error *error) { return Fill(&options, out.shape(0), out.data(), error); });
+}
+
+}  // namespace
+
+void bind_points(nb::module_ &m) {
+    m.def("patterns", [] { return listed(sf_pattern_name, sf_pattern_description); });
+
+    m.def("fill_points", &fill<float, sf_points_fill_f32>, "out"_a.noconvert(), "pattern"_a, "scramble"_a, "dims"_a,
+          "seed"_a, "first"_a, "threads"_a);
+    m.def("fill_points", &fill<double, sf_points_fill_f64>, "out"_a.noconvert(), "pattern"_a, "scramble"_a, "dims"_a,
+          "seed"_a, "first"_a, "threads"_a);
+    m.def("fill_points", &fill<uint32_t, sf_points_fill_u32>, "out"_a.noconvert(), "pattern"_a, "scramble"_a, "dims"_a,
+          "seed"_a, "first"_a, "threads"_a);
+
+    m.def(
+        "valid_counts",
+        [](const std::string &pattern, uint32_t dims, uint64_t n) {
+            std::pair<uint64_t, uint64_t> counts;
+            sf_pattern found = find_pattern(pattern);
+            call([&](sf_error *error) {
+                return sf_pattern_valid_counts(found, dims, n, &counts.first, &counts.second, error);
+            });
+            return counts;
+        },
+        "pattern"_a, "dims"_a, "n"_a);
+}

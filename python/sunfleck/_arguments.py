@@ -1,0 +1,98 @@
+# SPDX-FileCopyrightText: 2026 The Sunfleck developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""arguments: what a caller passed, as the numbers and arrays that C takes.
+
+Only kinds and shapes are checked here, and that a number fits its C type; ranges are C's to say.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+Vector = tuple[float, float, float]
+
+
+def integer(name: str, value: Any, bits: int = 64) -> int:
+    """A whole number in [0, 2^bits)."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} is {value!r}; give an integer") from None
+    if not 0 <= number < 1 << bits:
+        raise ValueError(f"{name} is {number}; give an integer from 0 to {(1 << bits) - 1}")
+    return number
+
+
+def vector(name: str, value: Any) -> Vector:
+    """Three real numbers, as floats; what they may be is C's to say."""
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        raise ValueError(f"{name} is {value!r}; give three numbers") from None
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name} is {value!r}; give three numbers")
+    if array.shape != (3,):
+        raise ValueError(f"{name} has shape {array.shape}; give three numbers")
+    x, y, z = array.tolist()
+    return float(x), float(y), float(z)
+
+
+def number(name: str, value: Any) -> float:
+    """A real number, as a float; strings and arrays are refused."""
+    if isinstance(value, (bool, str, bytes)):
+        raise TypeError(f"{name} is {value!r}; give a number")
+    try:
+        return float(value)
+    except OverflowError:
+        raise ValueError(f"{name} is {value!r}, which no float holds") from None
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} is {value!r}; give a number") from None
+
+
+def text(name: str, value: Any) -> str:
+    """A string."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name} is {value!r}; give a string")
+    return value
+
+
+def one_of(name: str, value: DTypeLike, allowed: Sequence[str]) -> np.dtype[Any]:
+    """A dtype among those allowed."""
+    try:
+        dtype = np.dtype(value)
+    except TypeError:
+        raise TypeError(f"{name} is {value!r}; give {' or '.join(allowed)}") from None
+    if dtype.name not in allowed or not dtype.isnative:
+        raise TypeError(f"{name} is {value!r}; give {' or '.join(allowed)}")
+    return dtype
+
+
+def shape_of(name: str, value: Any) -> tuple[int, ...]:
+    """A shape: an integer or a sequence of integers, none negative."""
+    sizes = value if isinstance(value, (tuple, list)) else (value,)
+    shape = tuple(integer(name, size, bits=63) for size in sizes)
+    if math.prod(shape) >= 1 << 60:
+        raise MemoryError(f"{name} is {value!r}: no memory holds {math.prod(shape)} values")
+    return shape
+
+
+def output_array(out: NDArray[Any] | None, shape: tuple[int, ...], dtype: np.dtype[Any]) -> NDArray[Any]:
+    """`out`, filled in place by the caller, or a new array; refused where it would need a copy."""
+    if out is None:
+        return np.empty(shape, dtype)
+    if not isinstance(out, np.ndarray):
+        raise TypeError(f"out is {type(out).__name__}; give a NumPy array")
+    if out.dtype != dtype:
+        raise TypeError(f"out has dtype {out.dtype}; it must be {dtype}")
+    if out.shape != shape:
+        raise ValueError(f"out has shape {out.shape}; it must be {shape}")
+    if not (out.flags.c_contiguous and out.flags.aligned and out.flags.writeable):
+        raise ValueError("out is not C-contiguous, aligned and writeable; it can't be filled in place")
+    return out

@@ -1,0 +1,250 @@
+# SPDX-FileCopyrightText: 2026 The Sunfleck developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""mapping: the unit square onto pixels, triangles, disks, spheres and hemispheres.
+
+Each mapping has `Mapping.sample`, `Mapping.pdf` and `Mapping.invert`; its parameters follow the
+points, by place or by name. Pixel maps have the pixel's centre at (0.5, 0.5); the pole of spheres
+and hemispheres is +z.
+
+Examples
+--------
+>>> import sunfleck as sf
+>>> u = sf.points("sobol", 8)
+>>> w = sf.mapping.cosine_hemisphere.sample(u)
+>>> sf.mapping.cosine_hemisphere.pdf(w).shape
+(8,)
+>>> sf.mapping.triangle.sample(u, a=(0, 0, 0), b=(1, 0, 0), c=(0, 1, 0)).shape
+(8, 3)
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sunfleck import _core
+from sunfleck._arguments import output_array
+
+__all__ = [
+    "MAPPINGS",
+    "Mapping",
+    "cosine_hemisphere",
+    "disk_concentric",
+    "disk_naive",
+    "disk_polar",
+    "hemisphere",
+    "pixel_box",
+    "pixel_gaussian",
+    "pixel_tent",
+    "sphere",
+    "triangle",
+]
+
+MAPPINGS: dict[str, str] = _core.mappings()
+"""The mappings: name → one line about it."""
+
+
+def _real_array(name: str, value: ArrayLike, dtype: np.dtype[Any] | None) -> NDArray[Any]:
+    """Real numbers as float32 or float64: as wanted, else float32 stays and the rest is float64."""
+    try:
+        array = np.asarray(value)
+    except ValueError as error:
+        raise ValueError(f"{name} is not a regular array: {error}") from None
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name} has dtype {array.dtype}; give real numbers")
+    if dtype is None:
+        dtype = np.dtype(np.float32 if array.dtype == np.float32 else np.float64)
+    return np.require(array, dtype, ["C", "A"])
+
+
+class Mapping:
+    """A mapping of the unit square: points of uniform density become points of the shape's.
+
+    Parameters
+    ----------
+    name : str
+        One of `sunfleck.MAPPINGS`.
+
+    Attributes
+    ----------
+    name, description : str
+    parameters : dict of str to str
+        The parameters, in the order in which they follow the points, and what each may be.
+
+    Notes
+    -----
+    Points are arrays of any leading shape, float32 or float64; other real numbers become
+    float64. Results have the points' dtype; float32 results are the C functions' own, bit for
+    bit. A parameter is one value for all points or one for each (any shape that broadcasts).
+    Every method checks all of its input before it writes anything, and releases the GIL.
+    """
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.description = MAPPINGS[name]
+        self._inputs, self._outputs, self._parameters = _core.mapping_signature(name)
+        self.parameters: dict[str, str] = {
+            parameter: ("a point (x, y, z), " if components == 3 else "")
+            + allowed
+            + (f"; default {default:g}" if default is not None else "")
+            for parameter, components, default, allowed in self._parameters
+        }
+        self.__doc__ = f"{name}: {self.description}."
+
+    def sample(
+        self, u: ArrayLike, *parameters: ArrayLike, out: NDArray[Any] | None = None, **named: ArrayLike
+    ) -> NDArray[Any]:
+        """The points of the shape that points of the unit square go to.
+
+        Parameters
+        ----------
+        u : array_like, shape (..., 2)
+            In [0, 1).
+        *parameters, **named
+            The mapping's own, see ``parameters``.
+        out : ndarray, optional
+            Filled in place: of the result's shape and dtype, C-contiguous, apart from the input.
+
+        Returns
+        -------
+        ndarray, shape (..., 2) in the plane or (..., 3) in space, dtype of ``u``
+
+        Raises
+        ------
+        ValueError
+            A wrong shape, a value that is not in [0, 1), a parameter out of its range (the
+            point and the value are named), or an ``out`` that would need a copy.
+        TypeError
+            Input that is not of real numbers; a missing or unknown parameter; ``out`` of
+            another dtype.
+        """
+        return self._map("sample", u, self._inputs, (self._outputs,), parameters, named, out)
+
+    def pdf(
+        self, x: ArrayLike, *parameters: ArrayLike, out: NDArray[Any] | None = None, **named: ArrayLike
+    ) -> NDArray[Any]:
+        """The density of `sample` at points of the shape: per area, or per solid angle of directions.
+
+        Parameters
+        ----------
+        x : array_like, shape (..., 2) or (..., 3)
+            Finite; directions have length 1.
+        *parameters, **named
+            The mapping's own, see ``parameters``.
+        out : ndarray, optional
+            Filled in place: of the result's shape and dtype, C-contiguous, apart from the input.
+
+        Returns
+        -------
+        ndarray, shape (...), dtype of ``x``
+            At least 0; 0 outside the shape (a triangle's points are taken to lie on it).
+
+        Raises
+        ------
+        ValueError, TypeError
+            As `sample`.
+        """
+        return self._map("pdf", x, self._outputs, (), parameters, named, out)
+
+    def invert(
+        self, x: ArrayLike, *parameters: ArrayLike, out: NDArray[Any] | None = None, **named: ArrayLike
+    ) -> NDArray[Any]:
+        """The points of the unit square that `sample` takes to these points of the shape.
+
+        Parameters
+        ----------
+        x : array_like, shape (..., 2) or (..., 3)
+            Finite, on the shape; directions have length 1.
+        *parameters, **named
+            The mapping's own, see ``parameters``.
+        out : ndarray, optional
+            Filled in place: of the result's shape and dtype, C-contiguous, apart from the input.
+
+        Returns
+        -------
+        ndarray, shape (..., 2), in [0, 1), dtype of ``x``
+
+        Raises
+        ------
+        ValueError, TypeError
+            As `sample`.
+        """
+        return self._map("invert", x, self._outputs, (self._inputs,), parameters, named, out)
+
+    def _map(
+        self,
+        operation: str,
+        points: ArrayLike,
+        width: int,
+        result: tuple[int, ...],
+        placed: tuple[ArrayLike, ...],
+        named: dict[str, ArrayLike],
+        out: NDArray[Any] | None,
+    ) -> NDArray[Any]:
+        array = _real_array("the points", points, None)
+        if array.ndim < 1 or array.shape[-1] != width:
+            raise ValueError(f"the points have shape {array.shape}; {self.name}.{operation} takes (..., {width})")
+        leading = array.shape[:-1]
+        values = self._bind(operation, placed, named)
+        parameters = [
+            None if value is None else self._parameter(name, components, value, leading, array.dtype)
+            for (name, components, _, _), value in zip(self._parameters, values, strict=True)
+        ]
+        target = output_array(out, leading + result, array.dtype)
+        if any(np.may_share_memory(target, given) for given in (array, *parameters) if given is not None):
+            raise ValueError("out overlaps the points or a parameter; give an array of its own")
+        _core.mapping_fill(operation, self.name, array, parameters, target)
+        return target
+
+    def _bind(
+        self, operation: str, placed: tuple[ArrayLike, ...], named: dict[str, ArrayLike]
+    ) -> list[ArrayLike | None]:
+        """The parameters in order, by place and then by name; None where the default stands."""
+        names = [name for name, _, _, _ in self._parameters]
+        call = f"{self.name}.{operation}"
+        if len(placed) > len(names):
+            raise TypeError(f"{call} takes {len(names)} parameters after the points ({', '.join(names)})")
+        given = dict(zip(names, placed, strict=False))
+        for name, value in named.items():
+            if name not in names:
+                raise TypeError(f"{call} has no parameter {name!r}; it has {', '.join(names) or 'none'}")
+            if name in given:
+                raise TypeError(f"{call} was given {name!r} twice")
+            given[name] = value
+        for name, _, default, allowed in self._parameters:
+            if default is None and name not in given:
+                raise TypeError(f"{call} needs its parameter {name!r}: {allowed}")
+        return [given.get(name) for name in names]
+
+    def _parameter(
+        self, name: str, components: int, value: ArrayLike, leading: tuple[int, ...], dtype: np.dtype[Any]
+    ) -> NDArray[Any]:
+        """One value for all points, or one for each, packed."""
+        array = _real_array(name, value, dtype)
+        one = () if components == 1 else (components,)
+        if array.shape == one:
+            return array
+        try:
+            return np.ascontiguousarray(np.broadcast_to(array, leading + one))
+        except ValueError:
+            raise ValueError(
+                f"{name} has shape {array.shape}; give {one}, or one for each point, {leading + one}"
+            ) from None
+
+    def __repr__(self) -> str:
+        return f"<mapping {self.name}: {self.description}>"
+
+
+pixel_box = Mapping("pixel_box")
+pixel_tent = Mapping("pixel_tent")
+pixel_gaussian = Mapping("pixel_gaussian")
+triangle = Mapping("triangle")
+disk_polar = Mapping("disk_polar")
+disk_concentric = Mapping("disk_concentric")
+disk_naive = Mapping("disk_naive")
+sphere = Mapping("sphere")
+hemisphere = Mapping("hemisphere")
+cosine_hemisphere = Mapping("cosine_hemisphere")

@@ -1,0 +1,149 @@
+# SPDX-FileCopyrightText: 2026 The Sunfleck developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""points: patterns, rules that place n points in [0,1)^d."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+from numpy.typing import DTypeLike, NDArray
+
+from sunfleck import _core
+from sunfleck._arguments import integer, one_of, output_array, shape_of, text
+
+__all__ = ["PATTERNS", "points", "valid_counts"]
+
+PATTERNS: dict[str, str] = _core.patterns()
+"""The patterns: name → one line about it."""
+
+
+def points(
+    pattern: str,
+    n: int,
+    d: int = 2,
+    *,
+    seed: int = 0,
+    scramble: str | None = "default",
+    start: int = 0,
+    dtype: DTypeLike = "float32",
+    threads: int | None = None,
+    out: NDArray[Any] | None = None,
+) -> NDArray[Any]:
+    """Points ``start`` to ``start + n - 1`` of a pattern in [0,1)^d.
+
+    Point i depends only on (pattern, d, scramble, seed, i): calls may be split, reordered and
+    run on any number of threads with the same bits.
+
+    Parameters
+    ----------
+    pattern : str
+        One of `sunfleck.PATTERNS`.
+    n : int
+        How many points. uniform and jittered take some counts only, see `valid_counts`.
+    d : int
+        Dimensions of a point, at least 1; at most 21,201 for sobol, 6,542 for halton.
+    seed : int
+        In [0, 2^64).
+    scramble : str or None
+        "owen" (sobol), "permuted" (halton), "default" (the pattern's own: owen for sobol,
+        permuted for halton, none elsewhere); None is the plain sequence, in the natural order
+        of the index.
+    start : int
+        Index of the first point.
+    dtype : "float32", "float64" or "uint32"
+        24 or 53 bits a value, or the 32-bit words that the floats come from.
+    threads : int, optional
+        How many to use, at least 1. None: one for each processor. Changes no bit.
+    out : ndarray, optional
+        Filled in place: shape (n, d), of this dtype, C-contiguous.
+
+    Returns
+    -------
+    ndarray, shape (n, d), of the dtype, in [0, 1), never 1
+
+    Raises
+    ------
+    ValueError
+        An unknown name, a count that the pattern can't take (the nearest are named), a value
+        out of range, or an ``out`` that would need a copy.
+    TypeError
+        A value of the wrong kind, or another dtype.
+
+    Warns
+    -----
+    UserWarning
+        sobol where the points are not an aligned block of a power of two: they lose their
+        balance, and the error's n^-3/2 becomes n^-1 (Owen 2020).
+
+    Notes
+    -----
+    Releases the GIL while it fills.
+
+    References
+    ----------
+    Joe & Kuo 2008, "Constructing Sobol sequences with better two-dimensional projections".
+    Burley 2020, "Practical hash-based Owen scrambling".
+    Owen 2020, "On dropping the first Sobol' point".
+
+    Examples
+    --------
+    >>> import sunfleck as sf
+    >>> sf.points("sobol", 4, scramble=None).tolist()
+    [[0.0, 0.0], [0.5, 0.5], [0.25, 0.75], [0.75, 0.25]]
+    """
+    n, start = integer("n", n), integer("start", start)
+    d = integer("d", d, bits=32)
+    kind = one_of("dtype", dtype, ("float32", "float64", "uint32"))
+    if threads is not None and integer("threads", threads, bits=32) == 0:  # C's word for all processors
+        raise ValueError("threads is 0; give at least 1, or None for one for each processor")
+    options: dict[str, Any] = {
+        "pattern": text("pattern", pattern),
+        "scramble": "none" if scramble is None else text("scramble", scramble),
+        "dims": d,
+        "seed": integer("seed", seed),
+        "first": start,
+        "threads": threads or 0,
+    }
+    array = output_array(out, shape_of("(n, d)", (n, d)), kind)
+    _core.fill_points(array, **options)
+    if pattern == "sobol" and n and (n & (n - 1) or start % n):
+        warnings.warn(
+            f"{n} points from {start} on are not an aligned block of a power of two of Sobol's "
+            "sequence: they lose its balance",
+            stacklevel=2,
+        )
+    return array
+
+
+def valid_counts(pattern: str, n: int, d: int = 2) -> tuple[int | None, int | None]:
+    """The nearest counts that a pattern takes, at or below n and at or above it.
+
+    Parameters
+    ----------
+    pattern : str
+        One of `sunfleck.PATTERNS`.
+    n : int
+        The count wished for.
+    d : int
+        Dimensions of a point.
+
+    Returns
+    -------
+    tuple of two ints
+        Both n where n is valid; None where there is no such count.
+
+    Raises
+    ------
+    ValueError, TypeError
+        An unknown pattern, or a value out of range or of the wrong kind.
+
+    Examples
+    --------
+    >>> import sunfleck as sf
+    >>> sf.valid_counts("jittered", n=997, d=2)
+    (992, 999)
+    """
+    below, above = _core.valid_counts(text("pattern", pattern), integer("d", d, bits=32), integer("n", n))
+    return below or None, above or None

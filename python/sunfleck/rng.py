@@ -1,0 +1,252 @@
+# SPDX-FileCopyrightText: 2026 The Sunfleck developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""rng: generators of random bits, by name."""
+
+from __future__ import annotations
+
+import secrets
+import time
+from collections.abc import Mapping, Sequence
+from typing import Any, overload
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from sunfleck import _core
+from sunfleck._arguments import integer, one_of, output_array, shape_of, text
+
+__all__ = ["RNGS", "Rng"]
+
+Shape = int | Sequence[int]
+
+RNGS: dict[str, str] = _core.rngs()
+"""The generators: name → one line about it."""
+
+
+class Rng:
+    """A generator of random bits.
+
+    Parameters
+    ----------
+    name : str
+        One of `sunfleck.RNGS`.
+    seed : int, optional
+        In [0, 2^64); with ``stream=0`` the generator is seeded as its reference is, and refuses
+        a seed that its method can't take. None: from the clock and the system, kept in ``seed``.
+    stream : int
+        In [0, 2^64). Distinct streams of one seed are independent sequences.
+
+    Attributes
+    ----------
+    name, seed, stream
+        As given, or as chosen.
+
+    Raises
+    ------
+    ValueError
+        An unknown name, or a seed or stream that the method can't take; its range is named.
+
+    Notes
+    -----
+    Streams are frozen: name, seed and stream give the same words in every release and on every
+    instruction set. Threads may share a generator, taking turns; a generator for each
+    (``spawn``) is faster and repeatable.
+
+    Examples
+    --------
+    >>> import sunfleck as sf
+    >>> rng = sf.Rng("xoshiro256++", seed=1)
+    >>> rng.random((2, 3)).shape
+    (2, 3)
+    >>> sf.Rng("minstd", seed=1).bits(3).tolist()
+    [16807, 282475249, 1622650073]
+    """
+
+    __slots__ = ("_core",)
+
+    _core: _core.Rng
+
+    def __init__(self, name: str, seed: int | None = None, stream: int = 0) -> None:
+        stream = integer("stream", stream)
+        if seed is not None:
+            self._core = _core.Rng(text("name", name), integer("seed", seed), stream)
+            return
+        mixed = secrets.randbits(64) ^ time.time_ns()
+        try:
+            self._core = _core.Rng(text("name", name), mixed or 1, stream)
+        except ValueError:  # a method of 31 bits; or a bad name or stream, which this reports again
+            self._core = _core.Rng(name, 1 + mixed % (1 << 30), stream)
+
+    @property
+    def name(self) -> str:
+        return self._core.name
+
+    @property
+    def seed(self) -> int:
+        return self._core.seed
+
+    @property
+    def stream(self) -> int:
+        return self._core.stream
+
+    @overload
+    def random(self, shape: None = None, dtype: DTypeLike = "float64", out: None = None) -> float: ...
+    @overload
+    def random(
+        self, shape: Shape | None = None, dtype: DTypeLike = "float64", out: NDArray[Any] | None = None
+    ) -> NDArray[Any]: ...
+    def random(
+        self, shape: Shape | None = None, dtype: DTypeLike = "float64", out: NDArray[Any] | None = None
+    ) -> float | NDArray[Any]:
+        """Uniform values in [0, 1), never 1.
+
+        Parameters
+        ----------
+        shape : int or tuple of ints, optional
+            None: one float, or the shape of ``out``.
+        dtype : "float64" or "float32"
+            53 or 24 random bits a value.
+        out : ndarray, optional
+            Filled in place: of this shape and dtype, C-contiguous.
+
+        Returns
+        -------
+        ndarray of the shape and dtype, in [0, 1)
+
+        Raises
+        ------
+        TypeError, ValueError
+            Another dtype, a negative size, or an ``out`` that would need a copy.
+
+        Notes
+        -----
+        Releases the GIL while it fills.
+        """
+        kind = one_of("dtype", dtype, ("float64", "float32"))
+        return self._filled(shape, kind, out, float)
+
+    @overload
+    def bits(self, shape: None = None, dtype: DTypeLike = "uint32", out: None = None) -> int: ...
+    @overload
+    def bits(
+        self, shape: Shape | None = None, dtype: DTypeLike = "uint32", out: NDArray[Any] | None = None
+    ) -> NDArray[Any]: ...
+    def bits(
+        self, shape: Shape | None = None, dtype: DTypeLike = "uint32", out: NDArray[Any] | None = None
+    ) -> int | NDArray[Any]:
+        """Raw outputs, in order.
+
+        Parameters
+        ----------
+        shape : int or tuple of ints, optional
+            None: one integer, or the shape of ``out``.
+        dtype : "uint32" or "uint64"
+            As uint32 a 31-bit method gives one word a draw, a 64-bit method its low half first;
+            as uint64 methods of 31 and 32 bits give two draws, the first in the low half.
+        out : ndarray, optional
+            Filled in place: of this shape and dtype, C-contiguous.
+
+        Returns
+        -------
+        ndarray of the shape and dtype
+
+        Raises
+        ------
+        TypeError, ValueError
+            Another dtype, a negative size, or an ``out`` that would need a copy.
+        """
+        kind = one_of("dtype", dtype, ("uint32", "uint64"))
+        return self._filled(shape, kind, out, int)
+
+    def _filled(self, shape: Shape | None, dtype: np.dtype[Any], out: NDArray[Any] | None, scalar: type) -> Any:
+        if shape is None and out is None:
+            return scalar(self._filled(1, dtype, None, scalar)[0])
+        wanted = out.shape if shape is None and isinstance(out, np.ndarray) else shape_of("shape", shape)
+        array = output_array(out, wanted, dtype)
+        self._core.fill(array)
+        return array
+
+    def reset(self) -> None:
+        """Starts again, as the name, seed and stream first gave it."""
+        self._core.reset()
+
+    def skip(self, count: int) -> None:
+        """Passes over ``count`` native draws at once, in O(log count).
+
+        Parameters
+        ----------
+        count : int
+            In [0, 2^64), in draws of the method's own width (31, 32 or 64 bits).
+
+        Raises
+        ------
+        NotImplementedError
+            The method has no such skip; the generator is as it was.
+
+        Examples
+        --------
+        >>> import sunfleck as sf
+        >>> a, b = sf.Rng("pcg32", seed=1), sf.Rng("pcg32", seed=1)
+        >>> _ = a.bits(1000)
+        >>> b.skip(1000)
+        >>> a.bits() == b.bits()
+        True
+        """
+        self._core.skip(integer("count", count))
+
+    def spawn(self, count: int) -> list[Rng]:
+        """Independent generators of the same kind, for threads or tasks.
+
+        They depend on this generator's seed and stream and on how many it spawned before, not
+        on how much it was drawn from.
+
+        Examples
+        --------
+        >>> import sunfleck as sf
+        >>> a, b = sf.Rng("pcg32", seed=1).spawn(2)
+        >>> a.bits() == b.bits()
+        False
+        """
+        return [Rng._wrap(core) for core in self._core.spawn(integer("count", count, bits=31))]
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """The whole state: ``{"name": str, "words": list of ints}``, for `from_state`."""
+        return {"name": self._core.name, "words": self._core.state()}
+
+    @classmethod
+    def from_state(cls, state: Mapping[str, Any]) -> Rng:
+        """A generator that goes on where ``state`` was taken.
+
+        Raises
+        ------
+        ValueError
+            A state that the method can't be in.
+
+        Examples
+        --------
+        >>> import sunfleck as sf
+        >>> rng = sf.Rng("splitmix64", seed=3)
+        >>> twin = sf.Rng.from_state(rng.state)
+        >>> rng.bits() == twin.bits()
+        True
+        """
+        try:
+            name, words = state["name"], state["words"]
+        except (TypeError, KeyError):
+            raise ValueError(f"state is {state!r}; give what Rng.state returned") from None
+        core = _core.rng_from_state(text("state name", name), [integer("state word", word) for word in words])
+        return cls._wrap(core)
+
+    @classmethod
+    def _wrap(cls, core: _core.Rng) -> Rng:
+        rng = cls.__new__(cls)
+        rng._core = core
+        return rng
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Rng.from_state, (self.state,)
+
+    def __repr__(self) -> str:
+        return f"Rng({self.name!r}, seed={self.seed}, stream={self.stream})"
