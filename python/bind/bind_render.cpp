@@ -1,0 +1,210 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "sunfleck/render.h"
+
+#include <nanobind/stl/string.h>
+
+#include <exception>
+#include <memory>
+#include <string>
+
+#include "bind_scene.h"
+
+namespace {
+
+// Owns a film; the arrays that show it hold this object, and so the film, alive.
+struct film_handle {
+    sf_film *film = nullptr;
+    bool signalled = false;  // Ctrl-C arrived while it was rendered
+
+    film_handle() = default;
+    ~film_handle() { sf_film_destroy(film); }
+    film_handle(const film_handle &) = delete;
+    film_handle &operator=(const film_handle &) = delete;
+};
+
+using array = nb::ndarray<nb::numpy, nb::ro>;
+
+// Read-only, without a copy: strides are the channel's own.
+template <class T>
+nb::object view(nb::handle owner, const sf_film *film, const sf_channel &channel, size_t depth) {
+    size_t shape[3] = {sf_film_height(film), sf_film_width(film), depth};
+    int64_t strides[3] = {static_cast<int64_t>(channel.row_stride / sizeof(T)),
+                          static_cast<int64_t>(channel.pixel_stride / sizeof(T)), 1};
+    return array(channel.data, depth ? 3 : 2, shape, owner, strides, nb::dtype<T>()).cast();
+}
+
+nb::object view_channel(nb::handle owner, const sf_film *film, const sf_channel &channel) {
+    switch (channel.type) {
+        case SF_CHANNEL_UINT32: return view<uint32_t>(owner, film, channel, 0);
+        case SF_CHANNEL_UINT8: return view<uint8_t>(owner, film, channel, 0);
+        case SF_CHANNEL_FLOAT32: break;
+    }
+    return view<float>(owner, film, channel, 0);
+}
+
+nb::list channels_of(nb::handle_t<film_handle> self) {
+    const sf_film *film = nb::cast<film_handle &>(self).film;
+    nb::list channels;
+    for (size_t i = 0; i < sf_film_channel_count(film); ++i) {
+        sf_channel channel = sf_film_channel(film, i);
+        channels.append(nb::make_tuple(channel.name, view_channel(self, film, channel)));
+    }
+    return channels;
+}
+
+// R, G and B interleave, so that the first channel's address and strides show all three.
+nb::object color_of(nb::handle_t<film_handle> self) {
+    const sf_film *film = nb::cast<film_handle &>(self).film;
+    return view<float>(self, film, sf_film_channel(film, 0), 3);
+}
+
+nb::dict attributes_of(const film_handle &self) {
+    nb::dict attributes;
+    for (size_t i = 0; i < sf_film_attribute_count(self.film); ++i) {
+        sf_attribute attribute = sf_film_attribute(self.film, i);
+        attributes[attribute.name] = attribute.text;
+    }
+    return attributes;
+}
+
+nb::dict summary_of(const film_handle &self) {
+    sf_film_summary s = sf_film_summarize(self.film);
+    nb::dict reasons, d;
+    for (int k = 0; k < SF_STOP_REASON_COUNT; ++k)
+        reasons[sf_stop_reason_name(static_cast<sf_stop_reason>(k))] = s.reasons[k];
+    d["pixels"] = s.pixels;
+    d["samples"] = s.samples;
+    d["traced_samples"] = s.traced_samples;
+    d["reasons"] = reasons;
+    d["nonfinite_samples"] = s.nonfinite_samples;
+    d["level"] = s.level;
+    d["tolerance"] = s.tolerance;
+    d["confidence"] = s.confidence;
+    d["worst_half_width"] = s.worst_half_width;
+    d["worst_pixel"] = nb::make_tuple(s.worst_x, s.worst_y);
+    d["mean_half_width"] = s.mean_half_width;
+    d["seconds"] = s.seconds;
+    d["threads"] = s.threads;
+    d["rounds"] = s.rounds;
+    return d;
+}
+
+// Watches a render from the thread that called it: Ctrl-C, and the caller's own function.
+struct watcher {
+    nb::object observer;
+    bool signalled = false;
+    std::exception_ptr failure;
+
+    // Tells C whether to stop. Ctrl-C stops and is spent: the partial picture is the answer to it.
+    int look(const sf_progress *progress) {
+        nb::gil_scoped_acquire acquired;
+        try {
+            if (PyErr_CheckSignals()) throw nb::python_error();
+            if (observer.is_none()) return 0;
+            nb::object answer = observer(nb::cast(*progress, nb::rv_policy::copy));
+            return answer.ptr() == Py_False;
+        } catch (nb::python_error &error) {
+            if (error.matches(PyExc_KeyboardInterrupt))
+                signalled = true;
+            else
+                failure = std::current_exception();
+        } catch (...) {
+            failure = std::current_exception();
+        }
+        return 1;
+    }
+};
+
+int on_progress(const sf_progress *progress, void *user) { return static_cast<watcher *>(user)->look(progress); }
+
+// The value whose name is `name`; what C names is what is allowed.
+template <class Enum>
+Enum find(const char *what, const std::string &name, const char *(*name_of)(Enum)) {
+    std::string allowed;
+    for (int k = 0;; ++k) {
+        const char *known = name_of(static_cast<Enum>(k));
+        if (!known) break;
+        if (name == known) return static_cast<Enum>(k);
+        allowed += (k ? ", " : "") + std::string(known);
+    }
+    std::string message = std::string(what) + " is '" + name + "'; it must be one of " + allowed;
+    throw nb::value_error(message.c_str());
+}
+
+sf_pattern find_pattern(const std::string &name) {
+    sf_pattern pattern;
+    sf_error error;
+    raise_unless_ok(sf_pattern_find(name.c_str(), &pattern, &error), error);
+    return pattern;
+}
+
+film_handle *render(const scene_handle &scene, uint32_t width, uint32_t height, std::array<uint32_t, 4> crop,
+                    uint32_t spp, double relative_tolerance, double absolute_tolerance, double confidence,
+                    uint32_t min_spp, uint32_t max_spp, double seconds, const std::string &pattern,
+                    const std::string &pixel_filter, const std::string &stop, const std::string &seeds, uint64_t seed,
+                    uint32_t threads, uint32_t tile_size, nb::object observer) {
+    watcher watch{observer, false, nullptr};
+    sf_render_options options = sf_render_options_default();
+    options.width = width;
+    options.height = height;
+    for (int k = 0; k < 4; ++k) options.crop[k] = crop[k];
+    options.spp = spp;
+    options.relative_tolerance = relative_tolerance;
+    options.absolute_tolerance = absolute_tolerance;
+    options.confidence = confidence;
+    options.min_spp = min_spp;
+    options.max_spp = max_spp;
+    options.seconds = seconds;
+    options.pattern = find_pattern(pattern);
+    options.pixel_filter = find("pixel_filter", pixel_filter, sf_pixel_filter_name);
+    options.stop = find("stop", stop, sf_stop_rule_name);
+    options.seeds = find("seeds", seeds, sf_seed_policy_name);
+    options.seed = seed;
+    options.threads = threads;
+    options.tile_size = tile_size;
+    options.progress = on_progress;
+    options.progress_user = &watch;
+
+    auto film = std::make_unique<film_handle>();
+    call([&](sf_error *error) { return sf_render(scene.scene, &options, &film->film, error); });
+    if (watch.failure) std::rethrow_exception(watch.failure);
+    film->signalled = watch.signalled;
+    return film.release();
+}
+
+}  // namespace
+
+void bind_render(nb::module_ &m) {
+    nb::class_<sf_progress>(m, "Progress")
+        .def_ro("round", &sf_progress::round)
+        .def_ro("samples", &sf_progress::samples)
+        .def_ro("pixels", &sf_progress::pixels)
+        .def_ro("pixels_done", &sf_progress::pixels_done)
+        .def_ro("expected_samples", &sf_progress::expected_samples)
+        .def_ro("seconds", &sf_progress::seconds)
+        .def_ro("time_limit", &sf_progress::time_limit)
+        .def_prop_ro("round_finished", [](const sf_progress &p) { return p.round_finished != 0; });
+
+    nb::class_<film_handle>(m, "Film")
+        .def_prop_ro("width", [](const film_handle &self) { return sf_film_width(self.film); })
+        .def_prop_ro("height", [](const film_handle &self) { return sf_film_height(self.film); })
+        .def_ro("signalled", &film_handle::signalled)
+        .def("channels", &channels_of)
+        .def("color", &color_of)
+        .def("attributes", &attributes_of)
+        .def("summary", &summary_of);
+
+    m.def("stop_reasons", [] {
+        nb::typed<nb::list, nb::str> names = nb::borrow<nb::typed<nb::list, nb::str>>(nb::list());
+        for (int k = 0; k < SF_STOP_REASON_COUNT; ++k)
+            names.append(sf_stop_reason_name(static_cast<sf_stop_reason>(k)));
+        return names;
+    });
+
+    m.def("render", &render, nb::rv_policy::take_ownership, "scene"_a, nb::kw_only(), "width"_a, "height"_a, "crop"_a,
+          "spp"_a, "relative_tolerance"_a, "absolute_tolerance"_a, "confidence"_a, "min_spp"_a, "max_spp"_a,
+          "seconds"_a, "pattern"_a, "pixel_filter"_a, "stop"_a, "seeds"_a, "seed"_a, "threads"_a, "tile_size"_a,
+          "progress"_a.none());
+}

@@ -1,0 +1,398 @@
+# SPDX-FileCopyrightText: 2026 The Sunfleck developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""render: a scene and options in, an image out that says per pixel how far it may be off."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sunfleck import _core
+from sunfleck._arguments import integer, number, text
+from sunfleck._core import Progress
+from sunfleck._files import FilePath
+from sunfleck.image import write_channels, write_false_color
+from sunfleck.scene import Scene
+
+__all__ = ["STOP_REASONS", "Image", "Progress", "Summary", "Tolerance", "render"]
+
+STOP_REASONS: tuple[str, ...] = tuple(_core.stop_reasons())
+"""The names of the numbers in `Image.stop_reason`."""
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """How far a pixel's (R+G+B)/3 may be off: ``max(absolute, relative * level)``.
+
+    Parameters
+    ----------
+    absolute : float
+        Linear radiance, at least 0.
+    relative : float
+        Of the level: the mean of (R+G+B)/3 over the frame after ``min_spp`` samples; at least 0.
+
+    Examples
+    --------
+    >>> import sunfleck as sf
+    >>> sf.Tolerance(absolute=0.002)
+    Tolerance(absolute=0.002, relative=0.0)
+    """
+
+    absolute: float = 0.0
+    relative: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("absolute", "relative"):
+            object.__setattr__(self, name, number(f"{name} tolerance", getattr(self, name)))
+        if self.absolute == 0 and self.relative == 0:  # C's word for "none asked for"
+            raise ValueError("the tolerance is 0, which no number of samples meets; give one above 0, or a fixed spp")
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What a render came to, over the image's pixels.
+
+    Attributes
+    ----------
+    pixels, samples : int
+        Pixels, and the samples that they took.
+    traced_samples : int
+        With those of the crop's margin.
+    reasons : dict of str to int
+        Pixels by stop reason.
+    nonfinite_samples : int
+        Samples that were NaN or infinite: dropped, never averaged in.
+    level : float
+        Mean of (R+G+B)/3 that a relative tolerance refers to.
+    tolerance : float
+        In linear radiance; 0 where none was asked for.
+    confidence : float
+        Of the half-widths.
+    worst_half_width, mean_half_width : float
+        In linear radiance.
+    worst_pixel : tuple of 2 ints
+        (x, y) of the worst half-width, in the image.
+    seconds : float
+        That the render took.
+    threads, rounds : int
+        As used.
+    """
+
+    pixels: int
+    samples: int
+    traced_samples: int
+    reasons: dict[str, int]
+    nonfinite_samples: int
+    level: float
+    tolerance: float
+    confidence: float
+    worst_half_width: float
+    worst_pixel: tuple[int, int]
+    mean_half_width: float
+    seconds: float
+    threads: int
+    rounds: int
+
+    @property
+    def share_met(self) -> float:
+        """Share of pixels that met the tolerance, in [0, 1]."""
+        return self.reasons["met"] / self.pixels
+
+    def __str__(self) -> str:
+        counts = ", ".join(f"{count} {reason}" for reason, count in self.reasons.items() if count)
+        rate = self.samples / self.seconds / 1e6 if self.seconds > 0 else 0.0
+        lines = [
+            f"pixels      {self.pixels}: {counts}",
+            f"samples     {self.samples}, {self.samples / self.pixels:.1f} a pixel",
+            f"time        {self.seconds:.2f} s on {self.threads} threads: {rate:.1f} million samples a second",
+            f"half-width  {self.mean_half_width:.3g} mean, {self.worst_half_width:.3g} worst at pixel "
+            f"{self.worst_pixel}, {100 * self.confidence:g} % confidence",
+        ]
+        if self.tolerance > 0:
+            lines.insert(1, f"tolerance   {self.tolerance:.3g} (level {self.level:.3g}): {self.share_met:.2%} met it")
+        if self.nonfinite_samples:
+            lines.append(f"dropped     {self.nonfinite_samples} samples that were not finite")
+        return "\n".join(lines)
+
+
+class Image:
+    """A rendered picture and its statistics. Made by `render`.
+
+    Attributes
+    ----------
+    color : ndarray of float32, shape (h, w, 3)
+        Mean radiance, linear RGB, at least 0. Row 0 is the top.
+    alpha : ndarray of float32, shape (h, w)
+        Share of samples that hit a surface, in [0, 1].
+    samples : ndarray of uint32, shape (h, w)
+        Samples taken.
+    half_width : ndarray of float32, shape (h, w)
+        Bounds the error of (R+G+B)/3 at the confidence asked for; infinite below 2 samples.
+    stop_reason : ndarray of uint8, shape (h, w)
+        Why the pixel stopped: an index into `sunfleck.STOP_REASONS`.
+    channels : list of (str, ndarray)
+        All of these as they are written: R G B A samples half_width stop_reason.
+    metadata : dict of str to str
+        Every option as it was used, the seed, version, instruction set, and what came of it.
+    interrupted : bool
+        Whether the render was stopped before its time, by Ctrl-C or by ``progress``.
+
+    Notes
+    -----
+    The arrays are read-only views of the library's memory, which lives as long as any of them.
+    """
+
+    def __init__(self, film: _core.Film) -> None:
+        self._film = film
+        self.width: int = film.width
+        self.height: int = film.height
+        self.channels: list[tuple[str, NDArray[Any]]] = film.channels()
+        named = dict(self.channels)
+        self.color: NDArray[np.float32] = film.color()
+        self.alpha: NDArray[np.float32] = named["A"]
+        self.samples: NDArray[np.uint32] = named["samples"]
+        self.half_width: NDArray[np.float32] = named["half_width"]
+        self.stop_reason: NDArray[np.uint8] = named["stop_reason"]
+        self.metadata: dict[str, str] = film.attributes()
+
+    @property
+    def interrupted(self) -> bool:
+        return self._film.signalled or self.summary().reasons["interrupted"] > 0
+
+    def summary(self) -> Summary:
+        """What the render came to; printed, it is a small table."""
+        return Summary(**self._film.summary())
+
+    def save(self, path: FilePath) -> None:
+        """Writes the picture, by the path's ending.
+
+        ``.exr``: one part, float32, linear: R G B A samples half_width stop_reason, and the
+        metadata as "sunfleck:NAME". ``.png``: 8-bit sRGB, values beyond [0, 1] clipped.
+
+        The file is written beside and renamed: a failure leaves whatever was there.
+
+        Raises
+        ------
+        ValueError
+            Another ending.
+        OSError
+            The file can't be written; with the reason.
+        """
+        write_channels(path, self.channels, self.metadata)
+
+    def save_map(self, channel: str, path: FilePath) -> None:
+        """Writes one channel as a PNG in false colours: dark blue is low, yellow high, logarithmic.
+
+        Parameters
+        ----------
+        channel : str
+            "samples", "half_width", or another of ``channels``.
+        path : path-like
+            Ending in .png.
+
+        Raises
+        ------
+        ValueError
+            An unknown channel, or another ending.
+        OSError
+            The file can't be written; with the reason.
+        """
+        named = dict(self.channels)
+        if channel not in named:
+            raise ValueError(f"channel is {channel!r}; the image has {', '.join(named)}")
+        write_false_color(path, named[channel])
+
+    def __repr__(self) -> str:
+        return f"Image({self.width} x {self.height}, {int(self.samples.sum(dtype=np.uint64))} samples)"
+
+
+def _tolerance(value: float | Tolerance | None) -> tuple[float, float]:
+    """Relative and absolute; both 0 where none is asked for."""
+    if value is None:
+        return 0.0, 0.0
+    if not isinstance(value, Tolerance):
+        value = Tolerance(relative=number("tolerance", value))
+    return value.relative, value.absolute
+
+
+def _count(name: str, value: int | None) -> int:
+    """A count that may be None, which is C's 0; so that 0 itself must be refused here."""
+    if value is None:
+        return 0
+    count = integer(name, value, bits=32)
+    if count == 0:
+        raise ValueError(f"{name} is 0; give at least 1, or None")
+    return count
+
+
+def _seconds(value: float | None) -> float:
+    if value is None:
+        return 0.0
+    seconds = number("seconds", value)
+    if seconds == 0:
+        raise ValueError("seconds is 0; give a time above 0, or None for no limit")
+    return seconds
+
+
+def _crop(value: Sequence[int] | None) -> tuple[int, int, int, int]:
+    if value is None:
+        return 0, 0, 0, 0
+    try:
+        x0, y0, x1, y1 = value
+    except (TypeError, ValueError):
+        raise ValueError(f"crop is {value!r}; give (x0, y0, x1, y1), half open, in pixels of the full frame") from None
+    names = ("x0", "y0", "x1", "y1")
+    crop = [integer(f"crop {name}", v, bits=32) for name, v in zip(names, (x0, y0, x1, y1), strict=True)]
+    if not any(crop):
+        raise ValueError("crop is (0, 0, 0, 0), which is empty; give x0 < x1 and y0 < y1")
+    return crop[0], crop[1], crop[2], crop[3]
+
+
+class _Bar:
+    """A tqdm bar: samples of a fixed count, or pixels that are done."""
+
+    def __init__(self) -> None:
+        from tqdm import tqdm
+
+        self._bar = tqdm(unit="px", dynamic_ncols=True, leave=False)
+
+    def __call__(self, progress: Progress) -> None:
+        if progress.expected_samples:
+            self._bar.unit, self._bar.total, self._bar.unit_scale = "sample", progress.expected_samples, True
+            self._bar.update(progress.samples - self._bar.n)
+            return
+        self._bar.total = progress.pixels
+        self._bar.set_postfix_str(f"{progress.samples / progress.pixels:.0f} samples a pixel", refresh=False)
+        self._bar.update(progress.pixels_done - self._bar.n)
+
+    def close(self) -> None:
+        self._bar.close()
+
+
+def render(
+    scene: Scene,
+    width: int = 512,
+    height: int = 512,
+    *,
+    spp: int | None = None,
+    tolerance: float | Tolerance | None = None,
+    confidence: float = 0.95,
+    min_spp: int = 32,
+    max_spp: int = 4096,
+    seconds: float | None = None,
+    pattern: str = "sobol",
+    pixel_filter: str = "box",
+    stop: str = "standard-error",
+    seeds: str = "pixel",
+    seed: int = 0,
+    threads: int | None = None,
+    tile_size: int = 16,
+    crop: Sequence[int] | None = None,
+    progress: bool | Callable[[Progress], object] | None = None,
+) -> Image:
+    """Renders a scene to a stated accuracy, a fixed count of samples, or a time.
+
+    Parameters
+    ----------
+    scene : Scene
+    width, height : int
+        Of the full frame, in pixels, 1 to 65,536.
+    spp : int, optional
+        A fixed count of samples a pixel; not with ``tolerance``.
+    tolerance : float or Tolerance, optional
+        A pixel is done when its half-width is within it. A plain number is relative to the
+        level: the mean of (R+G+B)/3 over the frame after ``min_spp``. With nothing given: 0.01.
+    confidence : float
+        Of the half-widths, per pixel, in (0, 1).
+    min_spp, max_spp : int
+        Samples a pixel before the first decision, and at the most.
+    seconds : float, optional
+        A time limit. Alone it is a budget, spent on every pixel.
+    pattern : str
+        One of `sunfleck.PATTERNS`.
+    pixel_filter : "box", "tent" or "gaussian"
+        What a pixel averages over: itself, two pixels' width, or a Gaussian of sigma 0.4 pixel.
+    stop : "standard-error"
+        The rule by which a pixel's half-width is told from its samples.
+    seeds : "pixel", "thread" or "shared"
+        How threads come by random numbers: keyed by pixel; a stream for each thread; the same
+        stream for all, which repeats their noise and is there to be seen.
+    seed : int
+        In [0, 2^64).
+    threads : int, optional
+        1 to 1,024. None: one for each processor.
+    tile_size : int
+        Pixels a side that a thread takes at a time: a multiple of 8, 8 to 1,024.
+    crop : (x0, y0, x1, y1), optional
+        Half open, in pixels of the full frame; the image has the crop's size.
+    progress : bool or callable, optional
+        True: a bar on stderr. A callable gets a `Progress` after every round and may return
+        False to stop.
+
+    Returns
+    -------
+    Image
+
+    Raises
+    ------
+    ValueError, TypeError
+        An option out of its range or of the wrong kind, which is named, before any work.
+    MemoryError
+        No memory for the film.
+    sunfleck.Error
+        Embree reported an error of its own.
+
+    Notes
+    -----
+    With ``seeds="pixel"`` the same scene, options and seed give the same picture bit for bit,
+    for any ``threads`` and ``tile_size``, on one instruction set. Releases the GIL. Ctrl-C
+    stops the render and returns the partial picture, its unfinished pixels marked interrupted.
+
+    Examples
+    --------
+    >>> import sunfleck as sf
+    >>> image = sf.render(sf.scenes.penumbra(), 32, 24, spp=16)
+    >>> image.color.shape, int(image.samples.min())
+    ((24, 32, 3), 16)
+    """
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene is {scene!r}; give a sunfleck.Scene")
+    if spp is not None and tolerance is not None:
+        raise ValueError(f"spp={spp} and tolerance={tolerance} are both given; choose a fixed count or an accuracy")
+    if progress is not None and not isinstance(progress, bool) and not callable(progress):
+        raise TypeError(f"progress is {progress!r}; give True, False or a callable")
+    relative, absolute = _tolerance(tolerance)
+    options: dict[str, Any] = {
+        "width": integer("width", width, bits=32),
+        "height": integer("height", height, bits=32),
+        "crop": _crop(crop),
+        "spp": _count("spp", spp),
+        "relative_tolerance": relative,
+        "absolute_tolerance": absolute,
+        "confidence": number("confidence", confidence),
+        "min_spp": integer("min_spp", min_spp, bits=32),
+        "max_spp": integer("max_spp", max_spp, bits=32),
+        "seconds": _seconds(seconds),
+        "pattern": text("pattern", pattern),
+        "pixel_filter": text("pixel_filter", pixel_filter),
+        "stop": text("stop", stop),
+        "seeds": text("seeds", seeds),
+        "seed": integer("seed", seed),
+        "threads": _count("threads", threads),
+        "tile_size": integer("tile_size", tile_size, bits=32),
+    }
+    if callable(progress):
+        tell = progress
+        return Image(_core.render(scene._core, progress=lambda p: tell(p) if p.round_finished else None, **options))
+    if not progress:
+        return Image(_core.render(scene._core, progress=None, **options))
+    bar = _Bar()
+    try:
+        return Image(_core.render(scene._core, progress=bar, **options))
+    finally:
+        bar.close()

@@ -1,0 +1,377 @@
+# SPDX-FileCopyrightText: 2026 The Sunfleck developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""scene: meshes over the caller's arrays, a camera, a background, and the plan of what they need."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sunfleck import _core
+from sunfleck._arguments import Vector, integer, number, vector
+
+__all__ = ["Camera", "Mesh", "Plan", "PlanDimensions", "Scene", "SceneInfo"]
+
+_log = logging.getLogger("sunfleck")
+
+
+def _rows_of_three(name: str, value: Any, kinds: str, wanted: str) -> NDArray[Any]:
+    try:
+        array = np.asarray(value)
+    except ValueError as error:
+        raise ValueError(f"{name} is not a regular array ({error}); give shape (n, 3)") from None
+    if array.dtype.kind not in kinds:
+        raise TypeError(f"{name} has dtype {array.dtype}; give {wanted}")
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"{name} has shape {array.shape}; give (n, 3)")
+    return array
+
+
+def _vertices(value: Any) -> NDArray[np.float32]:
+    array = _rows_of_three("vertices", value, "fiu", "float32, or other real numbers, which are copied")
+    with np.errstate(over="ignore"):  # becomes infinite, which C refuses by its number
+        return np.require(array, np.float32, ["C", "A"])
+
+
+def _triangles(value: Any, vertex_count: int) -> NDArray[np.uint32]:
+    array = _rows_of_three("triangles", value, "iu", "uint32, or other integers, which are copied")
+    if array.dtype != np.uint32 and array.size:
+        # Conversion would wrap what does not fit, so the range is checked while it can be.
+        wrong = (array < 0) | (array >= max(vertex_count, 1))
+        if wrong.any():
+            row = int(np.argmax(wrong.any(axis=1)))
+            raise ValueError(
+                f"triangle {row} has vertex indices {array[row].tolist()}; the mesh has {vertex_count} vertices"
+            )
+    return np.require(array, np.uint32, ["C", "A"])
+
+
+class Mesh:
+    """Triangles with one diffuse reflectance and one emission.
+
+    Parameters
+    ----------
+    vertices : array_like, shape (n, 3)
+        Positions in scene units, finite. A C-contiguous float32 array is used in place, other
+        real dtypes are copied once.
+    triangles : array_like, shape (m, 3)
+        Vertex indices, each in [0, n). A C-contiguous uint32 array is used in place, other
+        integer dtypes are copied once.
+    albedo : tuple of 3 floats
+        Diffuse reflectance, linear RGB, each in [0, 1]. Both sides reflect, with the flat
+        normal of the triangle.
+    emission : tuple of 3 floats
+        Radiance, linear RGB, each in [0, 1e18]. Only the side that (v1 - v0) x (v2 - v0)
+        points to emits.
+
+    Raises
+    ------
+    TypeError
+        An array of strings, objects or booleans, or indices that are not integers.
+    ValueError
+        A wrong shape, a vertex that is not finite, an index out of range, a colour out of
+        range, or an emissive mesh without area.
+
+    Notes
+    -----
+    The arrays must not change while the mesh is in use: Embree reads them in place.
+    Construction takes one pass over them.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import sunfleck as sf
+    >>> vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], dtype=np.float32)
+    >>> triangles = np.array([[0, 1, 2]], dtype=np.uint32)
+    >>> mesh = sf.Mesh(vertices, triangles, albedo=(0.7, 0.7, 0.7))
+    >>> mesh.vertices is vertices
+    True
+    """
+
+    __slots__ = ("albedo", "emission", "triangles", "vertices")
+
+    vertices: NDArray[np.float32]
+    triangles: NDArray[np.uint32]
+    albedo: Vector
+    emission: Vector
+
+    def __init__(
+        self,
+        vertices: ArrayLike,
+        triangles: ArrayLike,
+        albedo: Sequence[float] = (0.5, 0.5, 0.5),
+        emission: Sequence[float] = (0.0, 0.0, 0.0),
+    ) -> None:
+        self.vertices = _vertices(vertices)
+        self.triangles = _triangles(triangles, len(self.vertices))
+        self.albedo = vector("albedo", albedo)
+        self.emission = vector("emission", emission)
+        _core.check_mesh(self.vertices, self.triangles, self.albedo, self.emission)
+
+    def __repr__(self) -> str:
+        return (
+            f"Mesh({len(self.vertices)} vertices, {len(self.triangles)} triangles, "
+            f"albedo={self.albedo}, emission={self.emission})"
+        )
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A pinhole camera, or a thin lens where ``aperture_radius`` > 0.
+
+    Row 0 of the image is the top, image right is forward x up.
+
+    Parameters
+    ----------
+    position, target : tuple of 3 floats
+        Where the camera is and what it looks at, in scene units; not the same point.
+    up : tuple of 3 floats
+        A direction that shall be vertical in the image; not along the line of sight.
+    vertical_fov : float
+        Angle from the bottom to the top of the full frame, in degrees, in (0, 180).
+    aperture_radius : float
+        Of the lens, in scene units, at least 0; 0 is a pinhole.
+    focus_distance : float, optional
+        Along the axis to the focal plane, in scene units, above 0. None: through the target.
+
+    Raises
+    ------
+    TypeError, ValueError
+        A value of the wrong kind or out of its range, which is named.
+
+    Examples
+    --------
+    >>> import sunfleck as sf
+    >>> sf.Camera((0, -4, 3.2), (0, 0, 0.3), up=(0, 0, 1), vertical_fov=35).vertical_fov
+    35.0
+    """
+
+    position: Vector
+    target: Vector
+    up: Vector = (0.0, 1.0, 0.0)
+    vertical_fov: float = 40.0
+    aperture_radius: float = 0.0
+    focus_distance: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("position", "target", "up"):
+            object.__setattr__(self, name, vector(name, getattr(self, name)))
+        for name in ("vertical_fov", "aperture_radius"):
+            object.__setattr__(self, name, number(name, getattr(self, name)))
+        if self.focus_distance is not None:
+            object.__setattr__(self, "focus_distance", number("focus_distance", self.focus_distance))
+            if self.focus_distance == 0:  # C's word for "through the target"
+                raise ValueError("focus_distance is 0; give a distance above 0, or None for the target's")
+        _core.check_camera(*self._values())
+
+    def _values(self) -> tuple[Vector, Vector, Vector, float, float, float]:
+        focus = 0.0 if self.focus_distance is None else self.focus_distance
+        return self.position, self.target, self.up, self.vertical_fov, self.aperture_radius, focus
+
+
+@dataclass(frozen=True)
+class PlanDimensions:
+    """Some of a path's sample dimensions: ``count`` from ``first`` on, for one use.
+
+    ``use`` is pixel, lens, light, choice or surface; ``bounce`` is the path's vertex that they
+    serve (1 = the first surface hit), 0 for pixel and lens.
+    """
+
+    use: str
+    bounce: int
+    first: int
+    count: int
+
+    @property
+    def name(self) -> str:
+        """``use``, and the bounce where there is one: "pixel", "light 1"."""
+        return f"{self.use} {self.bounce}" if self.bounce else self.use
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a scene turned out to need, and what the renderer runs: nothing else.
+
+    Attributes
+    ----------
+    stages : list of str
+        The stages that run, in the order a path meets them.
+    dimensions : list of PlanDimensions
+        The uses of a path's sample dimensions, in order.
+    dimensions_per_path : int
+        Sample coordinates that one path takes at the most.
+    camera_rays, shadow_rays, surface_rays : int
+        Rays that one path traces at the most, by kind.
+    max_bounces : int
+        As the scene has it.
+    """
+
+    stages: list[str]
+    dimensions: list[PlanDimensions]
+    dimensions_per_path: int
+    camera_rays: int
+    shadow_rays: int
+    surface_rays: int
+    max_bounces: int
+
+    @property
+    def rays_per_path(self) -> int:
+        """Rays of all kinds that one path traces at the most."""
+        return self.camera_rays + self.shadow_rays + self.surface_rays
+
+    def __str__(self) -> str:
+        rays = f"{self.camera_rays} camera, {self.shadow_rays} shadow, {self.surface_rays} surface"
+        lines = [
+            f"bounces     {self.max_bounces}",
+            f"stages      {', '.join(self.stages)}",
+            f"rays        at most {self.rays_per_path} a path: {rays}",
+            f"dimensions  {self.dimensions_per_path} a path",
+        ]
+        for group in self.dimensions:
+            last = group.first + group.count - 1
+            span = f"{group.first}" if group.count == 1 else f"{group.first}-{last}"
+            lines.append(f"  {span:<10}{group.name}")
+        return "\n".join(lines)
+
+
+@dataclass(frozen=True)
+class SceneInfo:
+    """What a scene holds.
+
+    ``light_count`` pieces are sampled for light, of which ``rectangle_light_count`` are pairs of
+    triangles that form a parallelogram; ``degenerate_count`` triangles have no area;
+    ``copied_bytes`` of the arrays could not be read in place; scenes of the same picture have
+    the same ``hash``.
+    """
+
+    mesh_count: int
+    triangle_count: int
+    light_count: int
+    rectangle_light_count: int
+    degenerate_count: int
+    copied_bytes: int
+    bounds_lower: Vector
+    bounds_upper: Vector
+    hash: int
+
+
+class Scene:
+    """Meshes, a camera and a background, ready to render. Immutable.
+
+    Parameters
+    ----------
+    meshes : iterable of Mesh
+        At least one. Any emissive mesh is an area light. Their arrays are read in place and
+        kept alive by the scene.
+    camera : Camera
+    background : tuple of 3 floats
+        Radiance of rays that hit nothing, linear RGB, each in [0, 1e18]. It counts as emission.
+    max_bounces : int
+        0 (emission seen directly), 1 (direct light), ... 64.
+
+    Raises
+    ------
+    TypeError, ValueError
+        A value of the wrong kind or out of its range, which is named; no mesh.
+    MemoryError
+        No memory for Embree's hierarchy.
+    sunfleck.Error
+        Embree reported an error of its own.
+
+    Notes
+    -----
+    Construction builds Embree's hierarchy: about 0.3 s per million triangles, on all
+    processors. Any number of threads may render one scene.
+
+    Examples
+    --------
+    >>> import sunfleck as sf
+    >>> triangle = sf.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    >>> scene = sf.Scene([triangle], sf.Camera((0, 0, 3), (0, 0, 0)), background=(1, 1, 1))
+    >>> scene.info.triangle_count
+    1
+    """
+
+    def __init__(
+        self,
+        meshes: Iterable[Mesh],
+        camera: Camera,
+        background: Sequence[float] = (0.0, 0.0, 0.0),
+        max_bounces: int = 5,
+    ) -> None:
+        if isinstance(meshes, Mesh) or not isinstance(meshes, Iterable):
+            raise TypeError(f"meshes is {meshes!r}; give a list of sunfleck.Mesh")
+        self._meshes = tuple(meshes)
+        for mesh in self._meshes:
+            if not isinstance(mesh, Mesh):
+                raise TypeError(f"meshes holds {mesh!r}; every one must be a sunfleck.Mesh")
+        if not isinstance(camera, Camera):
+            raise TypeError(f"camera is {camera!r}; give a sunfleck.Camera")
+        self._camera = camera
+        self._background = vector("background", background)
+        self._core = _core.Scene()
+        for mesh in self._meshes:
+            self._core.add_mesh(mesh.vertices, mesh.triangles, mesh.albedo, mesh.emission)
+        self._core.set_camera(*camera._values())
+        self._core.set_background(self._background)
+        self._max_bounces = integer("max_bounces", max_bounces, bits=32)
+        self._core.set_max_bounces(self._max_bounces)
+        self._core.commit()
+        self._info = SceneInfo(**self._core.info())
+        self._report()
+
+    def _report(self) -> None:
+        info = self._info
+        if info.degenerate_count:
+            _log.info("%d of %d triangles have no area", info.degenerate_count, info.triangle_count)
+        if info.copied_bytes:
+            _log.info("%d bytes of mesh arrays end at a page's end and were copied", info.copied_bytes)
+
+    @property
+    def meshes(self) -> tuple[Mesh, ...]:
+        return self._meshes
+
+    @property
+    def camera(self) -> Camera:
+        return self._camera
+
+    @property
+    def background(self) -> Vector:
+        return self._background
+
+    @property
+    def max_bounces(self) -> int:
+        return self._max_bounces
+
+    @property
+    def info(self) -> SceneInfo:
+        """What the scene holds: counts, bounds, hash."""
+        return self._info
+
+    def plan(self) -> Plan:
+        """The stages, sample dimensions and rays that rendering the scene takes.
+
+        Examples
+        --------
+        >>> import sunfleck as sf
+        >>> plan = sf.scenes.penumbra().plan()
+        >>> [group.name for group in plan.dimensions]
+        ['pixel', 'light 1']
+        >>> plan.rays_per_path
+        2
+        """
+        plan: dict[str, Any] = self._core.plan()
+        dimensions = [PlanDimensions(*group) for group in plan.pop("dimensions")]
+        return Plan(dimensions=dimensions, **plan)
+
+    def __repr__(self) -> str:
+        return (
+            f"Scene({len(self._meshes)} meshes, {self._info.triangle_count} triangles, "
+            f"{self._info.light_count} lights, max_bounces={self._max_bounces})"
+        )
