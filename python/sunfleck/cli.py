@@ -1,0 +1,279 @@
+# SPDX-FileCopyrightText: 2026 The Sunfleck developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""cli: the command `sunfleck`."""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import os
+import sys
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+import sunfleck as sf
+from sunfleck import _core
+from sunfleck._files import replacing, writable_target
+from sunfleck.image import IMAGE_TYPES
+from sunfleck.load import FILE_TYPES
+from sunfleck.scenes import SCENES
+
+__all__ = ["main"]
+
+INTERRUPTED = 130  # 128 + SIGINT, as shells have it
+POINT_TYPES = (".npy", ".csv", ".txt")
+
+_SCENE_HELP = f"a built-in scene ({', '.join(SCENES)}; default penumbra) or a file ({', '.join(FILE_TYPES)})"
+
+_RENDER_EXAMPLES = """\
+examples:
+  sunfleck render -o out.exr
+      penumbra, every pixel to 1 % of the mean level at 95 % confidence
+  sunfleck render cornell --tolerance 0.03 --max-spp 16384 -o box.exr -o box.png
+      coarser, with more samples allowed where it is hard; two files of one picture
+  sunfleck render room.glb --spp 64 --width 1280 --height 720 -o room.png
+      a fixed count of samples a pixel
+  sunfleck render defocus --seconds 10 -o out.exr
+      as good as ten seconds allow
+
+An .exr holds R G B A, samples, half_width and stop_reason of each pixel, and every option as
+metadata; a .png holds the colours only, as sRGB. Ctrl-C saves what there is and exits with 130.
+"""
+
+_POINTS_EXAMPLES = """\
+examples:
+  sunfleck points sobol -n 16            prints 16 points as text, one a line
+  sunfleck points jittered -n 1024 -d 2 -o points.npy
+  sunfleck points halton -n 1000 -d 5 --scramble none -o points.csv
+
+patterns:
+"""
+
+_PLAN_EXAMPLES = """\
+examples:
+  sunfleck plan defocus
+  sunfleck plan room.glb
+"""
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser whose errors are one line, as all errors of the command are."""
+
+    def error(self, message: str) -> NoReturn:
+        raise argparse.ArgumentTypeError(f"{message} (see {self.prog} --help)")
+
+
+def _add_render(commands: argparse._SubParsersAction[_Parser]) -> None:
+    parser = commands.add_parser(
+        "render",
+        help="render a scene to a stated accuracy",
+        description="Render a scene to a stated accuracy, a fixed count of samples, or a time.",
+        epilog=_RENDER_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=_render)
+    parser.add_argument("scene", nargs="?", default="penumbra", metavar="SCENE", help=_SCENE_HELP)
+    add = parser.add_argument
+    add("-o", "--output", action="append", metavar="FILE", help=".exr or .png; default SCENE.exr; may be repeated")
+    add("--width", type=int, default=512, metavar="N", help="of the full frame, in pixels; default 512")
+    add("--height", type=int, default=512, metavar="N", help="default 512")
+
+    accuracy = parser.add_argument_group("accuracy, samples and time (default: --tolerance 0.01)")
+    add = accuracy.add_argument
+    add("--tolerance", type=float, metavar="X", help="a pixel is done when its half-width is X of the mean level")
+    add("--confidence", type=float, default=0.95, metavar="P", help="of the half-widths; default 0.95")
+    add("--spp", type=int, metavar="N", help="a fixed count of samples a pixel; not with --tolerance")
+    add("--min-spp", type=int, default=32, metavar="N", help="before the first decision; default 32")
+    add("--max-spp", type=int, default=4096, metavar="N", help="at the most; default 4096")
+    add("--seconds", type=float, metavar="T", help="a time limit; alone, a budget that is spent on every pixel")
+
+    sampling = parser.add_argument_group("sampling")
+    add = sampling.add_argument
+    add("--pattern", default="sobol", metavar="NAME", help=f"{', '.join(sf.PATTERNS)}; default sobol")
+    add("--pixel-filter", default="box", metavar="NAME", help="box, tent, gaussian; default box")
+    add("--stop", default="standard-error", metavar="RULE", help="default standard-error")
+    add("--seeds", default="pixel", metavar="POLICY", help="pixel, thread, shared; default pixel")
+    add("--seed", type=int, default=0, metavar="N", help="default 0")
+
+    work = parser.add_argument_group("work")
+    add = work.add_argument
+    add("--threads", type=int, metavar="N", help="default: one for each processor")
+    add("--crop", type=int, nargs=4, metavar=("X0", "Y0", "X1", "Y1"), help="half open, in pixels of the full frame")
+
+
+def _add_points(commands: argparse._SubParsersAction[_Parser]) -> None:
+    parser = commands.add_parser(
+        "points",
+        help="write the points of a pattern",
+        description="Write the points of a pattern in [0,1)^d.",
+        epilog=_POINTS_EXAMPLES + "".join(f"  {name:<14}{text}\n" for name, text in sf.PATTERNS.items()),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=_points)
+    add = parser.add_argument
+    add("pattern", metavar="PATTERN", help="its name, see below")
+    add("-n", type=int, default=256, metavar="N", help="how many points; default 256")
+    add("-d", type=int, default=2, metavar="D", help="dimensions; default 2")
+    add("-o", "--output", default="-", metavar="FILE", help=".npy, .csv, .txt, or - for text on standard output")
+    add("--seed", type=int, default=0, metavar="N", help="default 0")
+    add("--scramble", default="default", metavar="NAME", help="owen, permuted, none; default: the pattern's own")
+
+
+def _add_plan(commands: argparse._SubParsersAction[_Parser]) -> None:
+    parser = commands.add_parser(
+        "plan",
+        help="show what rendering a scene takes",
+        description="Show the stages, sample dimensions and rays that rendering a scene takes.",
+        epilog=_PLAN_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=_plan)
+    parser.add_argument("scene", nargs="?", default="penumbra", metavar="SCENE", help=_SCENE_HELP)
+
+
+def _parser() -> _Parser:
+    parser = _Parser(
+        prog="sunfleck",
+        description="Random numbers into pictures of stated accuracy.",
+        epilog="examples:\n  sunfleck render -o out.exr\n  sunfleck points sobol -n 16\n  sunfleck plan cornell\n\n"
+        "Each command has its own --help.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    version = f"sunfleck {sf.__version__} ({_core.isa()})"
+    parser.add_argument("--version", action="version", version=version)
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True, parser_class=_Parser)
+    _add_render(commands)
+    _add_points(commands)
+    _add_plan(commands)
+    return parser
+
+
+def _scene(name: str) -> sf.Scene:
+    if name in SCENES:
+        return SCENES[name]()
+    if not Path(name).suffix:
+        raise ValueError(f"there is no scene {name!r}; give one of {', '.join(SCENES)}, or a file")
+    return sf.load(name)
+
+
+def _render(given: argparse.Namespace) -> int:
+    outputs = given.output or [f"{Path(given.scene).stem}.exr"]
+    for output in outputs:
+        writable_target(output, "pictures", IMAGE_TYPES)  # refused now rather than after the work
+    image = sf.render(
+        _scene(given.scene),
+        given.width,
+        given.height,
+        spp=given.spp,
+        tolerance=given.tolerance,
+        confidence=given.confidence,
+        min_spp=given.min_spp,
+        max_spp=given.max_spp,
+        seconds=given.seconds,
+        pattern=given.pattern,
+        pixel_filter=given.pixel_filter,
+        stop=given.stop,
+        seeds=given.seeds,
+        seed=given.seed,
+        threads=given.threads,
+        crop=given.crop,
+        progress=sys.stderr.isatty(),
+    )
+    for output in outputs:
+        image.save(output)
+    print(image.summary())
+    if image.interrupted:
+        print("sunfleck: interrupted; the partial picture was saved", file=sys.stderr)
+        return INTERRUPTED
+    return 0
+
+
+def _write_points(points: NDArray[np.float32], output: str) -> None:
+    """As text where the ending is not .npy; nine digits tell every float apart."""
+    if output == "-":
+        np.savetxt(sys.stdout, points, fmt="%.9g", delimiter=",")
+        return
+    with replacing(output, "points", POINT_TYPES) as path:
+        if path.suffix == ".npy":
+            np.save(path, points)
+        else:
+            np.savetxt(path, points, fmt="%.9g", delimiter="," if path.suffix == ".csv" else " ")
+
+
+def _points(given: argparse.Namespace) -> int:
+    scramble = None if given.scramble == "none" else given.scramble
+    if given.output != "-":
+        writable_target(given.output, "points", POINT_TYPES)
+    points = sf.points(given.pattern, given.n, given.d, seed=given.seed, scramble=scramble)
+    _write_points(points, given.output)
+    return 0
+
+
+def _plan(given: argparse.Namespace) -> int:
+    print(_scene(given.scene).plan())
+    return 0
+
+
+def _split_crop(arguments: Sequence[str]) -> list[str]:
+    """ "--crop 0,0,64,64" as the four words that the parser takes."""
+    words: list[str] = []
+    for word in arguments:
+        words += word.split(",") if words and words[-1] == "--crop" else [word]
+    return words
+
+
+def _run(arguments: Sequence[str]) -> int:
+    """The exit code; what goes wrong becomes one line on standard error."""
+    try:
+        given = _parser().parse_args(_split_crop(arguments))
+        code: int = given.run(given)
+        sys.stdout.flush()
+        return code
+    except BrokenPipeError:  # the reader of our output has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except KeyboardInterrupt:
+        print("sunfleck: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    except MemoryError as error:
+        print(f"sunfleck: error: out of memory {error}".rstrip(), file=sys.stderr)
+        return 2
+    except (argparse.ArgumentTypeError, ValueError, TypeError, OSError, NotImplementedError, sf.Error) as error:
+        print(f"sunfleck: error: {' '.join(str(error).split())}", file=sys.stderr)
+        return 2
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs the command.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Without the program's name. None: those of the process.
+
+    Returns
+    -------
+    int
+        The exit code: 0, 2 after an error, 130 after Ctrl-C.
+    """
+    notices = logging.StreamHandler()
+    notices.setFormatter(logging.Formatter("sunfleck: %(message)s"))
+    logger = logging.getLogger("sunfleck")
+    logger.addHandler(notices)
+    logger.setLevel(logging.INFO)
+    try:
+        with warnings.catch_warnings():
+            warnings.showwarning = lambda message, *_: logger.warning("%s", message)
+            return _run(sys.argv[1:] if arguments is None else arguments)
+    finally:
+        logger.removeHandler(notices)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
