@@ -48,7 +48,7 @@ sf_status report(sf_error *error, sf_status status, const char *message) noexcep
 
 // A new file beside `path`, that becomes `path` by commit() and is removed otherwise.
 class file_beside {
-public:
+   public:
     explicit file_beside(const std::string &path) : path_(path) {
         const size_t slash = path.rfind('/');
         const std::string folder = slash == std::string::npos ? std::string() : path.substr(0, slash + 1);
@@ -94,7 +94,7 @@ public:
         committed_ = true;
     }
 
-private:
+   private:
     std::string path_, beside_;
     FILE *stream_ = nullptr;
     bool committed_ = false;
@@ -169,22 +169,27 @@ OIIO::ImageSpec describe(const sf_film *film, const std::vector<sf_channel> &cha
     return spec;
 }
 
-// Hands the channels over a few rows at a time. False where OpenImageIO refused.
+// Some rows as floats, and as the codes that a PNG holds.
+struct block {
+    block(size_t values, format kind) : linear(values), encoded(kind == format::png ? values : 0) {}
+    std::vector<float> linear;
+    std::vector<uint8_t> encoded;
+};
+
+// Hands the channels over a block at a time. False where OpenImageIO refused.
 bool write_rows(OIIO::ImageOutput &output, const std::vector<sf_channel> &channels, uint32_t width, uint32_t height,
-                format kind) {
-    std::vector<float> linear(size_t{block_rows} * width * channels.size());
-    std::vector<uint8_t> encoded(kind == format::png ? linear.size() : 0);
+                format kind, block &rows) {
     for (uint32_t row = 0; row < height; row += block_rows) {
         const uint32_t count = std::min(block_rows, height - row);
         for (size_t i = 0; i < channels.size(); ++i)
-            gather(channels[i], width, row, count, channels.size(), linear.data() + i);
+            gather(channels[i], width, row, count, channels.size(), rows.linear.data() + i);
 
         OIIO::TypeDesc type = OIIO::TypeDesc::FLOAT;
-        const void *data = linear.data();
+        const void *data = rows.linear.data();
         if (kind == format::png) {
-            std::transform(linear.begin(), linear.end(), encoded.begin(), encode_srgb);
+            std::transform(rows.linear.begin(), rows.linear.end(), rows.encoded.begin(), encode_srgb);
             type = OIIO::TypeDesc::UINT8;
-            data = encoded.data();
+            data = rows.encoded.data();
         }
         if (!output.write_scanlines(static_cast<int>(row), static_cast<int>(row + count), 0, type, data)) return false;
     }
@@ -194,15 +199,18 @@ bool write_rows(OIIO::ImageOutput &output, const std::vector<sf_channel> &channe
 void write(const sf_film *film, const std::string &path) {
     const format kind = format_of(path.c_str());
     const std::vector<sf_channel> channels = channels_of(film, kind);
-    const auto output = OIIO::ImageOutput::create(kind == format::exr ? "exr" : "png");
-    if (!output) throw failure{SF_STATUS_BACKEND, "OpenImageIO: " + OIIO::geterror()};
 
+    // Before anything is opened: an encoder that is closed without a row complains on stderr.
+    block rows(size_t{block_rows} * sf_film_width(film) * channels.size(), kind);
+
+    // The encoder comes last, so that it is gone before the stream that it writes through.
     file_beside file(path);
     OIIO::Filesystem::IOFile proxy(file.stream(), OIIO::Filesystem::IOProxy::Write);
+    const auto output = OIIO::ImageOutput::create(kind == format::exr ? "exr" : "png");
+    if (!output) throw failure{SF_STATUS_BACKEND, "OpenImageIO: " + OIIO::geterror()};
     if (!output->set_ioproxy(&proxy)) throw failure{SF_STATUS_BACKEND, "OpenImageIO: " + output->geterror()};
     const bool written = output->open(path, describe(film, channels, kind)) &&
-                         write_rows(*output, channels, sf_film_width(film), sf_film_height(film), kind);
-    // Closed in every case: it may still write through the proxy, which must outlive that.
+                         write_rows(*output, channels, sf_film_width(film), sf_film_height(film), kind, rows);
     const bool closed = output->close();
     if (!written || !closed) {
         const std::string reason = output->geterror();

@@ -43,8 +43,7 @@ static sf_status build(sf_scene *scene, sf_error *error) {
     if ((status = add_mesh(scene, floor_vertices, 4, quad_triangles, 2, 0.7f, 0, error)) ||
         (status = add_mesh(scene, box_vertices, 8, box_triangles, 10, 0.7f, 0, error)) ||
         (status = add_mesh(scene, lamp_vertices, 4, quad_triangles, 2, 0, 10, error)) ||
-        (status = sf_scene_set_camera(scene, &camera, error)) ||
-        (status = sf_scene_set_max_bounces(scene, 1, error)))
+        (status = sf_scene_set_camera(scene, &camera, error)) || (status = sf_scene_set_max_bounces(scene, 1, error)))
         return status;
     return sf_scene_commit(scene, error);
 }

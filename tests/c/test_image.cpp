@@ -69,10 +69,16 @@ const std::string folder = "image_test";
 
 sf_film make_film(uint32_t width, uint32_t height) {
     const size_t n = size_t{width} * height;
-    sf_film film{width, height, std::vector<float>(3 * n), std::vector<float>(n), std::vector<float>(n),
-                 std::vector<uint32_t>(n), std::vector<uint8_t>(n)};
+    sf_film film{width,
+                 height,
+                 std::vector<float>(3 * n),
+                 std::vector<float>(n),
+                 std::vector<float>(n),
+                 std::vector<uint32_t>(n),
+                 std::vector<uint8_t>(n)};
     for (size_t i = 0; i < n; ++i) {
-        for (size_t c = 0; c < 3; ++c) film.color[3 * i + c] = static_cast<float>((7 * i + 13 * c) % 1000) / 900 - 0.01f;
+        for (size_t c = 0; c < 3; ++c)
+            film.color[3 * i + c] = static_cast<float>((7 * i + 13 * c) % 1000) / 900 - 0.01f;
         film.alpha[i] = static_cast<float>(i) / static_cast<float>(n);
         film.samples[i] = static_cast<uint32_t>((i * 9973) % ((1u << 24) + 1));
         film.half_width[i] = 1e-3f * static_cast<float>(i);
@@ -102,9 +108,7 @@ std::string read_text(const std::string &path) {
     return text.str();
 }
 
-int empty_folder(void **) {
-    return std::system(("rm -rf " + folder + " && mkdir " + folder).c_str());
-}
+int empty_folder(void **) { return std::system(("rm -rf " + folder + " && mkdir " + folder).c_str()); }
 
 void test_exr_returns_every_channel_bit_for_bit(void **) {
     const uint32_t width = 37, height = 71; /* neither a multiple of the rows written at a time */
