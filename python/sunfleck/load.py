@@ -204,12 +204,17 @@ def load(path: FilePath) -> Scene:
     z_up = FILE_TYPES[file.suffix.lower()][1]
     if view is None:
         camera = _default_camera(centre, radius, z_up)
-        _log.info("%s: no camera in it; one at %s looks at %s", file, camera.position, camera.target)
+        _log.info(
+            "%s: no camera in it; one of %g degrees at (%.4g, %.4g, %.4g) looks at (%.4g, %.4g, %.4g)",
+            *(file, camera.vertical_fov, *camera.position, *camera.target),
+        )
     else:
         camera = _camera_of(view, centre, radius)
     if not any(any(mesh.emission) for mesh in meshes):
         light = _default_light(centre, radius, z_up)
         meshes.append(light)
-        side, middle = _LIGHT_SIDE * radius, tuple(light.vertices.mean(axis=0).tolist())
-        _log.info("%s: no light in it; a square of side %g and radiance %g is at %s", file, side, _RADIANCE, middle)
+        _log.info(
+            "%s: no light in it; a square of side %.4g and radiance %g shines from (%.4g, %.4g, %.4g)",
+            *(file, _LIGHT_SIDE * radius, _RADIANCE, *light.vertices.mean(axis=0)),
+        )
     return Scene(meshes, camera)

@@ -286,7 +286,7 @@ class Scene:
 
     Notes
     -----
-    Construction builds Embree's hierarchy: about 0.3 s per million triangles, on all
+    Construction builds Embree's hierarchy: about 0.4 s per million triangles on two
     processors. Any number of threads may render one scene.
 
     Examples

@@ -82,7 +82,8 @@ def _penumbra_meshes() -> list[Mesh]:
     ]
 
 
-_PENUMBRA_CAMERA = Camera((0, -4, 3.2), (0, 0, 0.3), up=(0, 0, 1), vertical_fov=35)
+def _penumbra_camera() -> Camera:
+    return Camera((0, -4, 3.2), (0, 0, 0.3), up=(0, 0, 1), vertical_fov=35)
 
 
 def penumbra() -> Scene:
@@ -97,7 +98,7 @@ def penumbra() -> Scene:
     >>> sf.scenes.penumbra()
     Scene(4 meshes, 20496 triangles, 1 lights, max_bounces=1)
     """
-    return Scene(_penumbra_meshes(), _PENUMBRA_CAMERA, max_bounces=1)
+    return Scene(_penumbra_meshes(), _penumbra_camera(), max_bounces=1)
 
 
 def defocus() -> Scene:
@@ -120,10 +121,11 @@ def defocus() -> Scene:
         (np.arange(len(places))[:, None, None] * len(vertices) + triangles).reshape(-1, 3),
         _GREY,
     )
-    position, target = np.array(_PENUMBRA_CAMERA.position), np.array(_PENUMBRA_CAMERA.target)
+    camera = _penumbra_camera()
+    position, target = np.array(camera.position), np.array(camera.target)
     axis = (target - position) / np.linalg.norm(target - position)
     focus = float((np.array(_SPHERE_CENTRE) - position) @ axis)
-    camera = dataclasses.replace(_PENUMBRA_CAMERA, aperture_radius=0.1, focus_distance=focus)
+    camera = dataclasses.replace(camera, aperture_radius=0.1, focus_distance=focus)
     return Scene([*_penumbra_meshes(), spheres], camera, max_bounces=1)
 
 

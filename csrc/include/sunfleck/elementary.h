@@ -56,22 +56,24 @@ static inline void sf_sincos_2pi(float u, float *sine, float *cosine) {
     *cosine = (quarter + 1) & 2 ? -second : second;
 }
 
-/* The arctangent of z in turns, |z| <= 1: [-1/8, 1/8]. */
-static inline float sf_atan_turns(float z) {
-    float t = z * z;
-    float p = 0x1.29bb9cp-7f + t * (-0x1.3c94d8p-8f + t * (0x1.b58f84p-10f + t * -0x1.1be6ccp-12f));
-    p = 0x1.7cc1b4p-9f +
-        t * (-0x1.b2992ep-5f +
-             t * (0x1.04bcp-5f + t * (-0x1.73d7eap-6f + t * (0x1.1d1236p-6f + t * (-0x1.b37436p-7f + t * p)))));
-    return z * 0.125f + (z * 0.03125f + z * p); /* 5/32 = 1/8 + 1/32: exact products */
+/* The arctangent of low / high in turns, 0 <= low <= high: [0, 1/8]; 0 for 0 / 0. Past 3/5 it
+ * is measured from the diagonal: atan z = pi/4 - atan((1 - z) / (1 + z)). */
+static inline float sf_atan_turns(float low, float high) {
+    int diagonal = low > 0.6f * high;
+    float numerator = diagonal ? high - low : low, denominator = diagonal ? high + low : high;
+    float z = numerator / (denominator > 0.0f ? denominator : 1.0f), t = z * z;
+    float p = 0x1.04b784p-5f + t * (-0x1.7315acp-6f + t * (0x1.16072p-6f + t * (-0x1.72c65ap-7f + t * 0x1.27e6aep-8f)));
+    p = 0x1.7cc1b4p-9f + t * (-0x1.b2991ep-5f + t * p);
+    /* The leading 5/32 as 1/8 + 1/32, whose products are exact. */
+    float a = z * 0.125f + (z * 0.03125f + z * p);
+    return diagonal ? 0.125f - a : a;
 }
 
 /* The inverse of sf_sincos_2pi: the angle of (x, y) in turns, [0,1); 0 for the origin. */
 static inline float sf_angle_2pi(float y, float x) {
     float ax = fabsf(x), ay = fabsf(y);
     int steep = ay > ax;
-    float low = steep ? ax : ay, high = steep ? ay : ax;
-    float a = sf_atan_turns(low / (high > 0.0f ? high : 1.0f));
+    float a = sf_atan_turns(steep ? ax : ay, steep ? ay : ax);
     a = steep ? 0.25f - a : a;
     a = x < 0.0f ? 0.5f - a : a;
     a = y < 0.0f ? 1.0f - a : a;
@@ -105,10 +107,21 @@ static inline float sf_log1m(float s) {
     return sf_log(v) + lost;
 }
 
+/* x held within +-87, by its bits: a comparison of floats would be threaded into branches. */
+static inline float sf_exp_clamp(float x) {
+    int32_t bits, magnitude;
+    memcpy(&bits, &x, 4);
+    magnitude = bits & 0x7fffffff;
+    magnitude = magnitude < 0x42ae0000 ? magnitude : 0x42ae0000; /* 87.0f */
+    bits = (int32_t)((uint32_t)bits & 0x80000000u) | magnitude;
+    memcpy(&x, &bits, 4);
+    return x;
+}
+
 /* exp(x) = 2^k (1 + p): k, 2^k and p = exp(f) - 1 of the remainder, |f| <= log(2) / 2. */
 static inline float sf_exp_split(float x, float *power) {
     float scaled = x * 0x1.715476p+0f;
-    int32_t k = (int32_t)(scaled + (scaled < 0.0f ? -0.5f : 0.5f));
+    int32_t k = (int32_t)(scaled + copysignf(0.5f, scaled));
     float f = (x - (float)k * 0x1.63p-1f) - (float)k * -0x1.bd0106p-13f;
     int32_t bits = (k + 127) << 23;
     memcpy(power, &bits, 4);
@@ -117,18 +130,17 @@ static inline float sf_exp_split(float x, float *power) {
     return f + f * f * p;
 }
 
-/* exp x: 0 below -87, infinity above 88. */
+/* exp x for |x| <= 87; beyond, the value at the nearer end: exp(-87) = 1.6e-38, so that the tail
+ * of a density stays positive. */
 static inline float sf_exp(float x) {
-    float inside = x < -87.0f ? -87.0f : x > 88.0f ? 88.0f : x, power;
-    float p = sf_exp_split(inside, &power), value = power + power * p;
-    return x < -87.0f ? 0.0f : x > 88.0f ? (float)INFINITY : value;
+    float power, p = sf_exp_split(sf_exp_clamp(x), &power);
+    return power + power * p;
 }
 
-/* exp(x) - 1 without cancellation near 0: -1 below -87, infinity above 88. */
+/* exp(x) - 1 without cancellation near 0, for x <= 87. */
 static inline float sf_expm1(float x) {
-    float inside = x < -87.0f ? -87.0f : x > 88.0f ? 88.0f : x, power;
-    float p = sf_exp_split(inside, &power), value = (power - 1.0f) + power * p;
-    return x < -87.0f ? -1.0f : x > 88.0f ? (float)INFINITY : value;
+    float power, p = sf_exp_split(sf_exp_clamp(x), &power);
+    return (power - 1.0f) + power * p;
 }
 
 #ifdef __cplusplus

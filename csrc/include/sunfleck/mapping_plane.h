@@ -166,8 +166,8 @@ static inline float sf_disk_concentric_pdf(const float x[2]) { return sf_disk_pd
 static inline void sf_disk_concentric_invert(const float x[2], float u[2]) {
     int upright = fabsf(x[1]) > fabsf(x[0]);
     float major = upright ? x[1] : x[0], minor = upright ? x[0] : x[1];
-    float length = sqrtf(x[0] * x[0] + x[1] * x[1]), radius = major < 0.0f ? -length : length;
-    float other = radius * (8.0f * sf_atan_turns(minor / (major != 0.0f ? major : 1.0f)));
+    float length = sqrtf(x[0] * x[0] + x[1] * x[1]), angle = sf_atan_turns(fabsf(minor), fabsf(major));
+    float radius = copysignf(length, major), other = copysignf(length * (8.0f * angle), minor);
     u[0] = sf_unit_clamp(0.5f + 0.5f * (upright ? other : radius));
     u[1] = sf_unit_clamp(0.5f + 0.5f * (upright ? radius : other));
 }

@@ -129,7 +129,7 @@ typedef enum sf_stage {
 const char *sf_stage_name(sf_stage stage);
 const char *sf_dimension_use_name(sf_dimension_use use);
 
-#define SF_PLAN_MAX_DIMENSIONS (2 + 3 * SF_MAX_BOUNCES)
+#define SF_PLAN_MAX_GROUPS (2 + 3 * SF_MAX_BOUNCES)
 
 /* What a scene turned out to need, and what the renderer runs: nothing else. */
 typedef struct sf_plan {
@@ -137,7 +137,7 @@ typedef struct sf_plan {
     uint32_t max_bounces;
     uint32_t dimensions_per_path;  /* sum of `count` below */
     uint32_t dimension_group_count;
-    sf_plan_dimensions dimensions[SF_PLAN_MAX_DIMENSIONS];
+    sf_plan_dimensions dimensions[SF_PLAN_MAX_GROUPS];
     uint32_t camera_rays;  /* per path: 1 */
     uint32_t shadow_rays;  /* per path, at the most */
     uint32_t surface_rays; /* per path, at the most */

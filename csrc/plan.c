@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* The plan: which stages a scene needs, and which sample dimensions exist. */
+
+#include <string.h>
+
+#include "scene_data.h"
+
+const char *sf_stage_name(sf_stage stage) {
+    switch (stage) {
+        case SF_STAGE_CAMERA: return "camera";
+        case SF_STAGE_LENS: return "lens";
+        case SF_STAGE_INTERSECT: return "intersect";
+        case SF_STAGE_MISS: return "miss";
+        case SF_STAGE_EMISSION: return "emission";
+        case SF_STAGE_CHOOSE_LIGHT: return "choose light";
+        case SF_STAGE_LIGHT: return "light";
+        case SF_STAGE_SURFACE: return "surface";
+        case SF_STAGE_LAST_SURFACE: return "last surface";
+        case SF_STAGE_WEIGHT: return "weight";
+        case SF_STAGE_COUNT: break;
+    }
+    return "unknown stage";
+}
+
+const char *sf_dimension_use_name(sf_dimension_use use) {
+    switch (use) {
+        case SF_DIMENSION_PIXEL: return "pixel";
+        case SF_DIMENSION_LENS: return "lens";
+        case SF_DIMENSION_LIGHT: return "light";
+        case SF_DIMENSION_CHOICE: return "choice";
+        case SF_DIMENSION_SURFACE: return "surface";
+    }
+    return "unknown dimension";
+}
+
+/* What the scene holds, as far as the plan depends on it. */
+typedef struct contents {
+    bool emission, reflection, background, lens;
+    size_t lights;
+} contents;
+
+static contents survey(const sf_scene *scene) {
+    contents has = {.lights = scene->lights.count, .lens = scene->camera.aperture_radius > 0};
+    for (size_t i = 0; i < scene->info.mesh_count; ++i)
+        for (int c = 0; c < 3; ++c) {
+            has.emission |= scene->meshes[i].mesh.emission[c] > 0;
+            has.reflection |= scene->meshes[i].mesh.albedo[c] > 0;
+        }
+    for (int c = 0; c < 3; ++c) has.background |= scene->background[c] > 0;
+    return has;
+}
+
+static uint32_t choose_stages(const contents *has, uint32_t max_bounces) {
+    uint32_t stages = 1u << SF_STAGE_INTERSECT;
+#define NEED(condition, stage) stages |= (uint32_t)((condition) != 0) << (stage)
+    NEED(!has->lens, SF_STAGE_CAMERA);
+    NEED(has->lens, SF_STAGE_LENS);
+    NEED(has->background, SF_STAGE_MISS);
+    NEED(has->emission, SF_STAGE_EMISSION);
+    /* Light arrives from lights, which are sampled, or from the background, which is not. */
+    bool bounces = max_bounces > 0 && has->reflection && (has->lights || has->background);
+    bool surface = bounces && max_bounces > 1, last = bounces && has->background;
+    NEED(bounces && has->lights > 0, SF_STAGE_LIGHT);
+    NEED(bounces && has->lights > 1, SF_STAGE_CHOOSE_LIGHT);
+    NEED(surface, SF_STAGE_SURFACE);
+    NEED(last, SF_STAGE_LAST_SURFACE);
+    NEED(has->lights && (surface || last), SF_STAGE_WEIGHT);
+#undef NEED
+    return stages;
+}
+
+static void add_dimensions(sf_plan *plan, sf_dimension_use use, uint32_t bounce, uint32_t count) {
+    plan->dimensions[plan->dimension_group_count++] =
+        (sf_plan_dimensions){.use = use, .bounce = bounce, .first = plan->dimensions_per_path, .count = count};
+    plan->dimensions_per_path += count;
+}
+
+void sf_plan_derive(const sf_scene *scene, sf_plan *plan) {
+    contents has = survey(scene);
+    memset(plan, 0, sizeof *plan);
+    plan->max_bounces = scene->max_bounces;
+    plan->stages = choose_stages(&has, scene->max_bounces);
+    plan->camera_rays = 1;
+    add_dimensions(plan, SF_DIMENSION_PIXEL, 0, 2);
+    if (has.lens) add_dimensions(plan, SF_DIMENSION_LENS, 0, 2);
+    for (uint32_t bounce = 1; bounce <= plan->max_bounces; ++bounce) {
+        if (sf_plan_has(plan, SF_STAGE_LIGHT)) {
+            add_dimensions(plan, SF_DIMENSION_LIGHT, bounce, 2);
+            ++plan->shadow_rays;
+        }
+        if (sf_plan_has(plan, SF_STAGE_CHOOSE_LIGHT)) add_dimensions(plan, SF_DIMENSION_CHOICE, bounce, 1);
+        if (sf_plan_has(plan, bounce < plan->max_bounces ? SF_STAGE_SURFACE : SF_STAGE_LAST_SURFACE)) {
+            add_dimensions(plan, SF_DIMENSION_SURFACE, bounce, 2);
+            ++plan->surface_rays;
+        }
+    }
+}

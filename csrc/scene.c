@@ -1,0 +1,326 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "sunfleck/scene.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "error.h"
+#include "platform.h"
+#include "scene_data.h"
+
+#define LIMIT 1e18f /* of coordinates and radiance: their squares and products stay finite */
+#define PAGE_SIZE 4096
+
+sf_mesh sf_mesh_default(void) {
+    sf_mesh mesh = {0};
+    for (int c = 0; c < 3; ++c) mesh.albedo[c] = 0.5f;
+    return mesh;
+}
+
+sf_camera sf_camera_default(void) {
+    return (sf_camera){.position = {0, 0, 1}, .up = {0, 1, 0}, .vertical_fov = 40};
+}
+
+sf_status sf_scene_create(sf_scene **out, sf_error *error) {
+    *out = NULL;
+    sf_scene *scene = calloc(1, sizeof *scene);
+    if (!scene) return sf_fail_memory(error, "a scene", sizeof *scene);
+    scene->camera = sf_camera_default();
+    scene->max_bounces = 5;
+    for (int c = 0; c < 3; ++c) {
+        scene->info.bounds_lower[c] = INFINITY;
+        scene->info.bounds_upper[c] = -INFINITY;
+    }
+    scene->device = rtcNewDevice(NULL);
+    if (scene->device) scene->embree = rtcNewScene(scene->device);
+    if (!scene->embree) {
+        int code = (int)rtcGetDeviceError(scene->device);
+        sf_scene_destroy(scene);
+        return sf_fail(error, SF_STATUS_BACKEND, "Embree gave no device or scene (its error %d)", code);
+    }
+    *out = scene;
+    return SF_STATUS_OK;
+}
+
+void sf_scene_destroy(sf_scene *scene) {
+    if (!scene) return;
+    if (scene->embree) rtcReleaseScene(scene->embree);
+    if (scene->device) rtcReleaseDevice(scene->device);
+    for (size_t i = 0; i < scene->info.mesh_count; ++i) {
+        free(scene->meshes[i].vertex_copy);
+        free(scene->meshes[i].index_copy);
+    }
+    free(scene->meshes);
+    for (int c = 0; c < SF_MESH_COLUMNS; ++c) sf_aligned_free(scene->mesh_table.columns[c]);
+    sf_lights_free(&scene->lights);
+    free(scene);
+}
+
+static sf_status refuse_committed(const sf_scene *scene, sf_error *error) {
+    if (!scene->committed) return SF_STATUS_OK;
+    return sf_fail(error, SF_STATUS_INVALID_VALUE, "the scene is committed; it can't be changed any more");
+}
+
+/* Refuses a value that is not in [0, upper]; NaN is in no interval. */
+static sf_status check_color(const char *what, const float *color, float upper, sf_error *error) {
+    for (int c = 0; c < 3; ++c)
+        if (!(color[c] >= 0 && color[c] <= upper))
+            return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s[%d] is %g; it must be in [0, %g]", what, c,
+                           (double)color[c], (double)upper);
+    return SF_STATUS_OK;
+}
+
+static sf_status check_vector(const char *what, const float *v, sf_error *error) {
+    for (int c = 0; c < 3; ++c)
+        if (!(fabsf(v[c]) <= LIMIT))
+            return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s[%d] is %g; it must be finite and at most %g in size", what,
+                           c, (double)v[c], (double)LIMIT);
+    return SF_STATUS_OK;
+}
+
+/* One pass over the arrays: every vertex finite, every index in range. */
+static sf_status check_mesh(const sf_mesh *mesh, size_t number, sf_error *error) {
+    if (!mesh->vertices || mesh->vertex_count < 3 || mesh->vertex_count > UINT32_MAX)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "mesh %zu has %zu vertices; it must have 3 to 2^32 - 1", number,
+                       mesh->vertices ? mesh->vertex_count : 0);
+    if (!mesh->triangles || mesh->triangle_count < 1 || mesh->triangle_count > UINT32_MAX)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "mesh %zu has %zu triangles; it must have 1 to 2^32 - 1", number,
+                       mesh->triangles ? mesh->triangle_count : 0);
+    for (size_t i = 0; i < 3 * mesh->vertex_count; ++i)
+        if (!(fabsf(mesh->vertices[i]) <= LIMIT))
+            return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                           "mesh %zu: coordinate %zu of vertex %zu is %g; it must be finite and at most %g in size",
+                           number, i % 3, i / 3, (double)mesh->vertices[i], (double)LIMIT);
+    for (size_t i = 0; i < 3 * mesh->triangle_count; ++i)
+        if (mesh->triangles[i] >= mesh->vertex_count)
+            return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                           "mesh %zu: triangle %zu has vertex index %u; the mesh has %zu vertices", number, i / 3,
+                           mesh->triangles[i], mesh->vertex_count);
+    sf_status status = check_color("albedo", mesh->albedo, 1, error);
+    return status ? status : check_color("emission", mesh->emission, LIMIT, error);
+}
+
+/* Embree loads the last vertex and the last index triple with 16-byte reads: up to 4 bytes past
+ * the array. They are harmless on the array's own page, and only there. */
+static bool can_read_past(const void *array, size_t bytes) { return ((uintptr_t)array + bytes) % PAGE_SIZE != 0; }
+
+static sf_status copy_padded(const void **array, void **copy, size_t bytes, sf_scene_info *info, sf_error *error) {
+    *copy = malloc(bytes + 16);
+    if (!*copy) return sf_fail_memory(error, "a padded copy of a mesh array", bytes);
+    memcpy(*copy, *array, bytes);
+    *array = *copy;
+    info->copied_bytes += bytes;
+    return SF_STATUS_OK;
+}
+
+static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count) {
+    const unsigned char *p = bytes;
+    uint64_t word;
+    hash = sf_hash64(hash, count);
+    for (; count >= 8; count -= 8, p += 8) {
+        memcpy(&word, p, 8);
+        hash = sf_mix64(hash ^ word) + UINT64_C(0x9e3779b97f4a7c15);
+    }
+    word = 0;
+    memcpy(&word, p, count);
+    return sf_hash64(hash, word);
+}
+
+/* Takes bounds, hash and degenerate triangles of a checked mesh into the scene's. */
+static void survey_mesh(sf_scene_info *info, const sf_mesh *mesh, size_t *degenerate) {
+    for (size_t i = 0; i < 3 * mesh->vertex_count; ++i) {
+        float v = mesh->vertices[i];
+        if (v < info->bounds_lower[i % 3]) info->bounds_lower[i % 3] = v;
+        if (v > info->bounds_upper[i % 3]) info->bounds_upper[i % 3] = v;
+    }
+    *degenerate = 0;
+    for (size_t i = 0; i < mesh->triangle_count; ++i) {
+        const uint32_t *t = mesh->triangles + 3 * i;
+        double n[3];
+        sf_triangle_cross(mesh->vertices + 3 * (size_t)t[0], mesh->vertices + 3 * (size_t)t[1],
+                          mesh->vertices + 3 * (size_t)t[2], n);
+        *degenerate += n[0] * n[0] + n[1] * n[1] + n[2] * n[2] == 0;
+    }
+    info->hash = hash_bytes(info->hash, mesh->vertices, 12 * mesh->vertex_count);
+    info->hash = hash_bytes(info->hash, mesh->triangles, 12 * mesh->triangle_count);
+    info->hash = hash_bytes(info->hash, mesh->albedo, sizeof mesh->albedo);
+    info->hash = hash_bytes(info->hash, mesh->emission, sizeof mesh->emission);
+    info->triangle_count += mesh->triangle_count;
+    info->degenerate_count += *degenerate;
+}
+
+static sf_status attach_to_embree(sf_scene *scene, const sf_mesh *mesh, uint32_t number, sf_error *error) {
+    RTCGeometry geometry = rtcNewGeometry(scene->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh->vertices, 0, 12,
+                               mesh->vertex_count);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh->triangles, 0, 12,
+                               mesh->triangle_count);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene->embree, geometry, number);
+    rtcReleaseGeometry(geometry);
+    int code = (int)rtcGetDeviceError(scene->device);
+    if (code == RTC_ERROR_NONE) return SF_STATUS_OK;
+    if (code == RTC_ERROR_OUT_OF_MEMORY) return sf_fail_memory(error, "a mesh in Embree", 12 * mesh->triangle_count);
+    return sf_fail(error, SF_STATUS_BACKEND, "Embree refused mesh %u (its error %d)", number, code);
+}
+
+static sf_status reserve_mesh(sf_scene *scene, sf_error *error) {
+    if (scene->info.mesh_count < scene->mesh_capacity) return SF_STATUS_OK;
+    size_t capacity = scene->mesh_capacity ? 2 * scene->mesh_capacity : 8;
+    sf_scene_mesh *meshes = realloc(scene->meshes, capacity * sizeof *meshes);
+    if (!meshes) return sf_fail_memory(error, "the list of meshes", capacity * sizeof *meshes);
+    scene->meshes = meshes;
+    scene->mesh_capacity = capacity;
+    return SF_STATUS_OK;
+}
+
+sf_status sf_scene_add_mesh(sf_scene *scene, const sf_mesh *mesh, sf_error *error) {
+    sf_status status = refuse_committed(scene, error);
+    size_t number = scene->info.mesh_count;
+    if (!status) status = check_mesh(mesh, number, error);
+    if (!status) status = reserve_mesh(scene, error);
+    if (status) return status;
+
+    sf_scene_info info = scene->info; /* kept only when all went well */
+    size_t degenerate;
+    survey_mesh(&info, mesh, &degenerate);
+    bool emissive = mesh->emission[0] > 0 || mesh->emission[1] > 0 || mesh->emission[2] > 0;
+    if (emissive && degenerate == mesh->triangle_count)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                       "mesh %zu emits light but all of its %zu triangles have area 0; a light needs an area", number,
+                       mesh->triangle_count);
+
+    sf_scene_mesh kept = {.mesh = *mesh};
+    if (!can_read_past(mesh->vertices, 12 * mesh->vertex_count))
+        status = copy_padded((const void **)&kept.mesh.vertices, (void **)&kept.vertex_copy, 12 * mesh->vertex_count,
+                             &info, error);
+    if (!status && !can_read_past(mesh->triangles, 12 * mesh->triangle_count))
+        status = copy_padded((const void **)&kept.mesh.triangles, (void **)&kept.index_copy, 12 * mesh->triangle_count,
+                             &info, error);
+    if (!status) status = attach_to_embree(scene, &kept.mesh, (uint32_t)number, error);
+    if (status) {
+        free(kept.vertex_copy);
+        free(kept.index_copy);
+        return status;
+    }
+    scene->meshes[number] = kept;
+    scene->info = info;
+    scene->info.mesh_count = number + 1;
+    return SF_STATUS_OK;
+}
+
+sf_status sf_scene_set_camera(sf_scene *scene, const sf_camera *camera, sf_error *error) {
+    sf_status status = refuse_committed(scene, error);
+    if (!status) status = check_vector("camera position", camera->position, error);
+    if (!status) status = check_vector("camera target", camera->target, error);
+    if (!status) status = check_vector("camera up", camera->up, error);
+    if (status) return status;
+    if (!(camera->vertical_fov > 0 && camera->vertical_fov < 180))
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "vertical_fov is %g; it must be in (0, 180) degrees",
+                       (double)camera->vertical_fov);
+    if (!(camera->aperture_radius >= 0 && camera->aperture_radius <= LIMIT))
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "aperture_radius is %g; it must be in [0, %g]",
+                       (double)camera->aperture_radius, (double)LIMIT);
+    if (!(camera->focus_distance >= 0 && camera->focus_distance <= LIMIT))
+        return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                       "focus_distance is %g; it must be in (0, %g], or 0 for the target's", (double)camera->focus_distance,
+                       (double)LIMIT);
+    double f[3], f2 = 0, up2 = 0, cross2 = 0;
+    for (int c = 0; c < 3; ++c) {
+        f[c] = (double)camera->target[c] - camera->position[c];
+        f2 += f[c] * f[c];
+        up2 += (double)camera->up[c] * camera->up[c];
+    }
+    if (f2 == 0)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "the camera looks at itself: position and target are both (%g, %g, %g)",
+                       (double)camera->position[0], (double)camera->position[1], (double)camera->position[2]);
+    for (int c = 0; c < 3; ++c) {
+        int d = (c + 1) % 3, e = (c + 2) % 3;
+        double x = f[d] * camera->up[e] - f[e] * camera->up[d];
+        cross2 += x * x;
+    }
+    if (!(cross2 > 1e-12 * f2 * up2))
+        return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                       "camera up (%g, %g, %g) is zero or along the line of sight; choose another direction",
+                       (double)camera->up[0], (double)camera->up[1], (double)camera->up[2]);
+    scene->camera = *camera;
+    return SF_STATUS_OK;
+}
+
+sf_status sf_scene_set_background(sf_scene *scene, const float radiance[3], sf_error *error) {
+    sf_status status = refuse_committed(scene, error);
+    if (!status) status = check_color("background", radiance, LIMIT, error);
+    if (!status) memcpy(scene->background, radiance, sizeof scene->background);
+    return status;
+}
+
+sf_status sf_scene_set_max_bounces(sf_scene *scene, uint32_t max_bounces, sf_error *error) {
+    sf_status status = refuse_committed(scene, error);
+    if (status) return status;
+    if (max_bounces > SF_MAX_BOUNCES)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "max_bounces is %u; it must be 0 to %d", max_bounces, SF_MAX_BOUNCES);
+    scene->max_bounces = max_bounces;
+    return SF_STATUS_OK;
+}
+
+static sf_status build_mesh_table(sf_scene *scene, sf_error *error) {
+    sf_mesh_table *table = &scene->mesh_table;
+    size_t rows = scene->info.mesh_count + 1;
+    table->miss = (uint32_t)scene->info.mesh_count;
+    for (int c = 0; c < SF_MESH_COLUMNS; ++c) {
+        float *column = table->columns[c] = sf_aligned_alloc(rows * sizeof *column);
+        if (!column) return sf_fail_memory(error, "the table of meshes", rows * sizeof *column);
+        memset(column, 0, rows * sizeof *column);
+    }
+    for (size_t i = 0; i < scene->info.mesh_count; ++i)
+        for (int c = 0; c < 3; ++c) {
+            table->columns[SF_MESH_ALBEDO_R + c][i] = scene->meshes[i].mesh.albedo[c];
+            table->columns[SF_MESH_EMISSION_R + c][i] = scene->meshes[i].mesh.emission[c];
+        }
+    return SF_STATUS_OK;
+}
+
+sf_status sf_scene_commit(sf_scene *scene, sf_error *error) {
+    sf_status status = refuse_committed(scene, error);
+    if (status) return status;
+    if (scene->info.mesh_count == 0)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "the scene has no mesh; add at least one");
+    status = build_mesh_table(scene, error);
+    if (!status) status = sf_lights_build(scene, error);
+    if (status) return status;
+    rtcCommitScene(scene->embree);
+    int code = (int)rtcGetDeviceError(scene->device);
+    if (code == RTC_ERROR_OUT_OF_MEMORY)
+        return sf_fail(error, SF_STATUS_OUT_OF_MEMORY, "out of memory: Embree's hierarchy over %zu triangles",
+                       scene->info.triangle_count);
+    if (code != RTC_ERROR_NONE)
+        return sf_fail(error, SF_STATUS_BACKEND, "Embree could not build the scene (its error %d)", code);
+    sf_scene_info *info = &scene->info;
+    info->light_count = scene->lights.count;
+    info->rectangle_light_count = scene->lights.rectangle_count;
+    info->hash = hash_bytes(info->hash, &scene->camera, sizeof scene->camera);
+    info->hash = hash_bytes(info->hash, scene->background, sizeof scene->background);
+    info->hash = sf_hash64(info->hash, scene->max_bounces);
+    sf_plan_derive(scene, &scene->plan);
+    scene->committed = true;
+    return SF_STATUS_OK;
+}
+
+static sf_status require_committed(const sf_scene *scene, sf_error *error) {
+    if (scene->committed) return SF_STATUS_OK;
+    return sf_fail(error, SF_STATUS_INVALID_VALUE, "the scene is not committed; call sf_scene_commit first");
+}
+
+sf_status sf_scene_get_info(const sf_scene *scene, sf_scene_info *info, sf_error *error) {
+    sf_status status = require_committed(scene, error);
+    if (!status) *info = scene->info;
+    return status;
+}
+
+sf_status sf_scene_get_plan(const sf_scene *scene, sf_plan *plan, sf_error *error) {
+    sf_status status = require_committed(scene, error);
+    if (!status) *plan = scene->plan;
+    return status;
+}
