@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* A batch: up to 1,024 paths of one cell of the frame, carried through the stages of the plan
+ * together as a structure of arrays. One thread owns it; it fits that core's second-level cache.
+ *
+ * Lane 16 b + l of the arrays by path is sample l of block b. Arrays by ray are compact: rays
+ * 0 .. count - 1 are alive, and `path` says whose they are. They are processed in whole packets
+ * of 16; what the lanes past the end hold is not used. */
+#ifndef SUNFLECK_BATCH_H
+#define SUNFLECK_BATCH_H
+
+#include "coordinates.h"
+#include "film.h"
+#include "platform.h"
+#include "scene_data.h"
+#include "sunfleck/render.h"
+
+typedef struct sf_camera_frame {
+    float position[3], forward[3], right[3], up[3]; /* an orthonormal frame */
+    float pixel;                                    /* size of a pixel on the plane at distance 1 */
+    float half_width, half_height;                  /* of the frame, in pixels */
+    float aperture_radius, focus_distance;
+} sf_camera_frame;
+
+/* What the batches of a render have in common; immutable while it runs. */
+typedef struct sf_render_context {
+    const sf_scene *scene;
+    sf_coordinates coordinates;
+    sf_camera_frame camera;
+    sf_pixel_filter filter;
+    sf_seed_policy seeds;
+    sf_isa isa;
+} sf_render_context;
+
+typedef struct sf_batch {
+    SF_ALIGNED(float) origin[3][SF_PATHS]; /* of the rays */
+    float direction[3][SF_PATHS];          /* unit length */
+    float distance[SF_PATHS];              /* to the hit */
+    float hit_normal[3][SF_PATHS];         /* Embree's, of any length */
+    uint32_t mesh[SF_PATHS];               /* that was hit; the table's `miss` row for none */
+    uint32_t path[SF_PATHS];
+    float throughput[3][SF_PATHS];
+    float pdf[SF_PATHS]; /* solid-angle density with which the surface drew the ray */
+
+    float point[3][SF_PATHS];  /* the vertex, moved off its surface */
+    float normal[3][SF_PATHS]; /* facing the side the ray came from */
+    float albedo[3][SF_PATHS];
+    float emission[3][SF_PATHS];
+    float light_pdf[SF_PATHS];
+    uint32_t alive[SF_PATHS]; /* 1 where the path goes on */
+
+    float coordinate[3][SF_PATHS]; /* of the stage at work, by path */
+    float coordinate_by_ray[3][SF_PATHS];
+
+    float to_light[3][SF_PATHS];     /* from the vertex, not normalized */
+    float contribution[3][SF_PATHS]; /* if nothing is in between */
+    uint32_t bin[SF_PATHS];          /* of the shadow ray: packets are formed within bins */
+    uint32_t order[SF_PATHS];        /* a permutation of rays */
+    float gather[SF_PATHS];          /* scratch of compaction */
+
+    float radiance[3][SF_PATHS]; /* by path */
+    float covered[SF_PATHS];     /* by path: 1 where the camera ray hit a surface */
+
+    sf_block blocks[SF_BLOCKS];
+    sf_block_statistics statistics[SF_BLOCKS];
+    uint32_t block_count;
+} sf_batch;
+
+/* Traces the paths of the batch's blocks: fills `statistics`. */
+void sf_batch_run(sf_batch *batch, const sf_render_context *context);
+
+/* trace.c: the nearest hits of the rays, packet by packet: of packet p those whose bit in
+ * active[p] is set. Fills distance, hit_normal and mesh, which is the miss row for the others. */
+void sf_trace_nearest(sf_batch *batch, const sf_scene *scene, uint32_t packets, const uint32_t *active,
+                      sf_coherence coherence);
+
+/* trace.c: shadow rays order[0 .. count - 1] from `point` along `to_light`; adds the contribution
+ * of those that arrive to the radiance of their paths. */
+void sf_trace_shadow(sf_batch *batch, const sf_scene *scene, uint32_t count);
+
+#endif

@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "coordinates.h"
+
+#include <stdbool.h>
+#include <string.h>
+
+#include "error.h"
+
+/* Sums a matrix over the bytes of the index, in reversed bits. */
+static void tabulate_sobol(uint32_t dimension, uint32_t table[4][256]) {
+    uint32_t columns[32];
+    sf_sobol_matrix(dimension, columns);
+    for (int byte = 0; byte < 4; ++byte)
+        for (uint32_t value = 0; value < 256; ++value) {
+            uint32_t sum = 0;
+            for (int bit = 0; bit < 8; ++bit)
+                if (value >> bit & 1u) sum ^= columns[8 * byte + bit];
+            table[byte][value] = sf_reverse_bits32(sum);
+        }
+}
+
+/* Gives each group of the plan its place. Light points have the best pair, (0, 1): a block of
+ * 16 then has one point in each cell of a 4 x 4 grid on the light. */
+static void assign_sources(sf_coordinates *coordinates, const sf_plan *plan) {
+    bool lens = plan->stages >> SF_STAGE_LENS & 1u;
+    for (uint32_t g = 0; g < plan->dimension_group_count; ++g) {
+        const sf_plan_dimensions *group = plan->dimensions + g;
+        sf_coordinate_source *source = coordinates->sources + g;
+        *source = (sf_coordinate_source){.first = group->first, .count = group->count, .set = group->bounce - 1};
+        switch (group->use) {
+            case SF_DIMENSION_PIXEL:
+                source->set = lens || plan->max_bounces > 1 ? plan->max_bounces : 0;
+                source->dimension = 2;
+                break;
+            case SF_DIMENSION_LENS:
+                source->set = plan->max_bounces;
+                source->dimension = 0;
+                break;
+            case SF_DIMENSION_LIGHT: source->dimension = 0; break;
+            case SF_DIMENSION_SURFACE: source->dimension = 2; break;
+            case SF_DIMENSION_CHOICE: source->dimension = 4; break;
+        }
+    }
+}
+
+static sf_status choose_cells(sf_coordinates *coordinates, uint32_t spp, sf_error *error) {
+    bool uniform = coordinates->pattern == SF_PATTERN_UNIFORM;
+    if (!uniform && coordinates->pattern != SF_PATTERN_JITTERED) return SF_STATUS_OK;
+    if (uniform && spp == 0)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                       "pattern uniform needs to know its total ahead: give spp, or choose another pattern");
+    coordinates->cells = spp ? spp : SF_LANES;
+    return sf_grid_sides(coordinates->cells, 2, coordinates->sides, error);
+}
+
+sf_status sf_coordinates_init(sf_coordinates *coordinates, sf_pattern pattern, const sf_plan *plan, uint32_t spp,
+                              uint64_t seed, sf_error *error) {
+    if ((unsigned)pattern > SF_PATTERN_SOBOL)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                       "pattern %s can't be rendered with; choose uniform, random, jittered, halton or sobol",
+                       sf_pattern_name(pattern) ? sf_pattern_name(pattern) : "?");
+    memset(coordinates, 0, sizeof *coordinates);
+    coordinates->pattern = pattern;
+    coordinates->seed = seed;
+    assign_sources(coordinates, plan);
+    if (pattern == SF_PATTERN_SOBOL)
+        for (uint32_t d = 0; d < SF_SET_DIMENSIONS; ++d) tabulate_sobol(d, coordinates->sobol[d]);
+    return choose_cells(coordinates, spp, error);
+}

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* The sample coordinates of a render: which point of the pattern a path's dimension is.
+ *
+ * A path's dimensions are drawn from low-dimensional sets side by side, each with keys and a
+ * shuffled order of its own (padding: Kollig & Keller 2002; shuffled as in Burley 2020), so that
+ * every bounce has the good first dimensions of the pattern. */
+#ifndef SUNFLECK_COORDINATES_H
+#define SUNFLECK_COORDINATES_H
+
+#include "sunfleck/points.h"
+#include "sunfleck/scene.h"
+
+#define SF_LANES 16  /* samples of a block, and rays of a packet */
+#define SF_BLOCKS 64 /* blocks of a batch: the pixels of a cell */
+#define SF_PATHS (SF_LANES * SF_BLOCKS)
+
+/* Sixteen samples of one pixel, with indices base .. base + 15, of which bit l of `active` says
+ * whether base + l is among those wanted. */
+typedef struct sf_block {
+    uint64_t key;  /* randomizes the block: of its pixel, or drawn from the thread's stream */
+    uint32_t base; /* a multiple of 16 */
+    uint32_t active;
+    uint32_t x, y;  /* of the full frame */
+    uint32_t pixel; /* in the film */
+} sf_block;
+
+/* Where a group of dimensions comes from. */
+typedef struct sf_coordinate_source {
+    uint32_t set;       /* 0 is in the pattern's own order, the others are shuffled */
+    uint32_t dimension; /* the first, within the set */
+    uint32_t first;     /* the first, within the path: what patterns without sets go by */
+    uint32_t count;     /* 1 or 2 */
+} sf_coordinate_source;
+
+#define SF_SET_DIMENSIONS 5 /* light 0 1, then pixel, lens or surface 2 3, then choice 4 */
+
+typedef struct sf_coordinates {
+    sf_pattern pattern;
+    uint32_t sides[2]; /* uniform, jittered: the grid that `cells` samples fill, and how many */
+    uint32_t cells;
+    uint64_t seed;
+    sf_coordinate_source sources[SF_PLAN_MAX_GROUPS]; /* by the plan's group */
+    /* Sobol's direction numbers, bits reversed, summed over each byte of the index. */
+    uint32_t sobol[SF_SET_DIMENSIONS][4][256];
+} sf_coordinates;
+
+/* Prepares the coordinates of a plan. `spp` is the fixed count, 0 where the count is open:
+ * jittered then fills one 4 x 4 grid after another, and uniform is refused. */
+sf_status sf_coordinates_init(sf_coordinates *coordinates, sf_pattern pattern, const sf_plan *plan, uint32_t spp,
+                              uint64_t seed, sf_error *error);
+
+#endif

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* The film's accumulators, and what it becomes when the render ends. */
+#ifndef SUNFLECK_FILM_H
+#define SUNFLECK_FILM_H
+
+#include "sunfleck/estimate.h"
+#include "sunfleck/render.h"
+
+/* What the 16 samples of a block come to: the lecture's vector mean and scalar sum of squares. */
+typedef struct sf_block_statistics {
+    sf_vector_moments moments; /* samples that are not finite are counted there, and left out */
+    uint32_t hits;             /* finite samples whose camera ray hit a surface */
+} sf_block_statistics;
+
+/* A pixel's running statistics. */
+typedef struct sf_film_pixel {
+    sf_vector_moments moments;
+    uint32_t hits;
+    float half_width;
+    uint8_t reason; /* sf_stop_reason, once it has stopped */
+    uint8_t stopped;
+} sf_film_pixel;
+
+/* The cells that the crop touches, in pixels of the full frame, and what is kept of them. */
+struct sf_film {
+    uint32_t x0, y0, width, height;         /* of the traced region */
+    uint32_t crop_x0, crop_y0, crop_width, crop_height;
+    sf_film_pixel *pixels;                  /* width * height */
+    float *color;                           /* of the crop, 3 * crop_width * crop_height */
+    float *alpha;
+    float *half_width;
+    uint32_t *samples;
+    uint8_t *reason;
+    sf_attribute *attributes;
+    size_t attribute_count;
+    sf_film_summary summary;
+};
+
+sf_status sf_film_create(const sf_render_options *options, sf_film **film, sf_error *error);
+
+/* Adds a block to its pixel; blocks of a pixel are added in the order of their base. */
+void sf_film_add(sf_film_pixel *pixel, const sf_block_statistics *block);
+
+/* Half-width of the error of (R+G+B)/3 by the lecture's colour rule, for z standard errors:
+ * z s / sqrt(3 N). With s^2 the sum of the channels' variances, var((R+G+B)/3) <= s^2 / 3, and
+ * equal to it where the channels move together. Infinity for fewer than two samples. */
+float sf_film_half_width(const sf_film_pixel *pixel, double z);
+
+/* Fills the crop's arrays and the counts of the summary from the accumulators. */
+void sf_film_resolve(sf_film *film);
+
+/* Records the options as attributes; after sf_film_resolve and with the summary complete. */
+sf_status sf_film_describe(sf_film *film, const sf_scene *scene, const sf_render_options *options, sf_isa isa,
+                           sf_error *error);
+
+#endif

@@ -1,0 +1,188 @@
+# SPDX-FileCopyrightText: 2026 The Sunfleck developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""points: SciPy's sequences, strata, splitting, threads, out=, bad input."""
+
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.stats import qmc
+
+import sunfleck as sf
+
+# A count and a dimension that every pattern takes: 4 x 4 x 4 cells.
+N, D = 64, 3
+NAMES = sorted(sf.PATTERNS)
+
+
+def test_descriptions_are_one_line_each() -> None:
+    assert {"uniform", "random", "jittered", "halton", "sobol"} <= set(sf.PATTERNS)
+    assert all(text and "\n" not in text for text in sf.PATTERNS.values())
+
+
+def test_plain_sobol_is_scipys_in_natural_order() -> None:
+    n, d = 1024, 64
+    gray = np.arange(n) ^ np.arange(n) >> 1  # SciPy's i-th point is ours of index gray(i)
+    expected = qmc.Sobol(d, scramble=False, bits=53).random(n)
+    for dtype in ("float32", "float64"):
+        assert np.array_equal(sf.points("sobol", n, d, scramble=None, dtype=dtype)[gray], expected)
+
+
+def test_plain_sobol_is_scipys_in_the_last_dimensions() -> None:
+    n, d = 8, 21201
+    gray = np.arange(n) ^ np.arange(n) >> 1
+    expected = qmc.Sobol(d, scramble=False).random(n)
+    assert np.array_equal(sf.points("sobol", n, d, scramble=None, dtype="float64")[gray], expected)
+
+
+def test_plain_halton_is_scipys() -> None:
+    n, d = 1000, 20
+    expected = qmc.Halton(d, scramble=False).random(n)
+    ours = sf.points("halton", n, d, scramble=None, dtype="float64")
+    # Ours lies on or below the exact fraction, to stay inside its interval; SciPy sums floats.
+    assert np.abs(ours - expected).max() < 2e-15
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("dtype", ["float32", "float64", "uint32"])
+def test_shape_dtype_and_interval(name: str, dtype: str) -> None:
+    u = sf.points(name, N, D, dtype=dtype)
+    assert u.shape == (N, D)
+    assert u.dtype == dtype
+    if dtype != "uint32":
+        assert u.min() >= 0
+        assert u.max() < 1
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_floats_are_the_words_top_bits(name: str) -> None:
+    words = sf.points(name, N, D, dtype="uint32")
+    assert np.array_equal(sf.points(name, N, D), (words >> 8) * np.float32(2**-24))
+    assert np.array_equal(np.floor(sf.points(name, N, D, dtype="float64") * 2**32), words)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_threads_change_no_bit(name: str) -> None:
+    n = 1 << 16  # 256 x 256
+    one = sf.points(name, n, 2, threads=1)
+    assert np.array_equal(sf.points(name, n, 2, threads=2), one)
+    assert np.array_equal(sf.points(name, n, 2), one)
+
+
+@pytest.mark.parametrize("name", ["random", "halton", "sobol"])
+def test_start_goes_on_with_the_sequence(name: str) -> None:
+    whole = sf.points(name, 1024, 5, seed=9)
+    assert np.array_equal(sf.points(name, 512, 5, seed=9, start=512), whole[512:])
+
+
+@pytest.mark.parametrize("name", ["random", "jittered", "halton", "sobol"])
+def test_seeds_differ_and_repeat(name: str) -> None:
+    a, b = sf.points(name, N, D, seed=1), sf.points(name, N, D, seed=2)
+    assert not np.array_equal(a, b)
+    assert np.array_equal(a, sf.points(name, N, D, seed=1))
+
+
+def test_scrambled_sobol_keeps_every_elementary_interval() -> None:
+    u = sf.points("sobol", 256, 2, seed=5)
+    for k in range(9):  # 2^k x 2^(8-k) boxes
+        boxes = np.floor(u * [1 << k, 1 << (8 - k)]).astype(int) @ [1 << (8 - k), 1]
+        assert len(np.unique(boxes)) == 256, k
+
+
+def test_jittered_has_one_point_in_each_cell() -> None:
+    u = sf.points("jittered", 992, 2, seed=3)
+    cells = [np.unique(np.floor(u * sides).astype(int), axis=0) for sides in ((32, 31), (31, 32))]
+    assert 992 in [len(c) for c in cells]
+
+
+@pytest.mark.parametrize(
+    ("pattern", "n", "d", "expected"),
+    [
+        ("jittered", 997, 2, (992, 999)),
+        ("jittered", 992, 2, (992, 992)),
+        ("uniform", 64, 3, (64, 64)),
+        ("sobol", 997, 2, (997, 997)),
+        ("jittered", 0, 2, (None, 1)),
+    ],
+)
+def test_valid_counts(pattern: str, n: int, d: int, expected: tuple[int, int]) -> None:
+    assert sf.valid_counts(pattern, n=n, d=d) == expected
+
+
+def test_every_valid_count_is_taken_and_no_other() -> None:
+    for n in range(1, 200):
+        below, above = sf.valid_counts("jittered", n=n, d=2)
+        if below == above == n:
+            assert sf.points("jittered", n, 2).shape == (n, 2)
+        else:
+            with pytest.raises(ValueError, match=f"{n}.*{below}.*{above}"):
+                sf.points("jittered", n, 2)
+
+
+@pytest.mark.parametrize(("n", "start"), [(1000, 0), (256, 128), (3, 0)])
+def test_sobol_warns_where_it_loses_its_balance(n: int, start: int) -> None:
+    with pytest.warns(UserWarning, match="power of two") as caught:
+        sf.points("sobol", n, start=start)
+    assert caught[0].filename == __file__
+
+
+def test_nothing_else_warns() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for n, start in ((0, 0), (1, 5), (1024, 0), (256, 512)):
+            sf.points("sobol", n, start=start)
+        sf.points("halton", 1000)
+        sf.points("random", 1000)
+
+
+def test_out_is_filled_in_place() -> None:
+    out = np.zeros((N, D), dtype=np.float64)
+    assert sf.points("sobol", N, D, dtype="float64", out=out) is out
+    assert np.array_equal(out, sf.points("sobol", N, D, dtype="float64"))
+
+
+@pytest.mark.parametrize(
+    ("out", "error"),
+    [
+        (np.zeros((N, D)), TypeError),
+        (np.zeros((D, N), dtype=np.float32), ValueError),
+        (np.zeros((D, N), dtype=np.float32).T, ValueError),
+        (np.zeros((N, 2 * D), dtype=np.float32)[:, ::2], ValueError),
+        ("out", TypeError),
+    ],
+)
+def test_out_that_would_need_a_copy_is_refused(out: Any, error: type[Exception]) -> None:
+    with pytest.raises(error, match="out"):
+        sf.points("sobol", N, D, out=out)
+    if isinstance(out, np.ndarray):
+        assert not out.any()
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "match"),
+    [
+        ({"pattern": "sobel"}, ValueError, "sobel.*sobol"),
+        ({"pattern": None}, TypeError, "pattern"),
+        ({"n": -1}, ValueError, "n is -1"),
+        ({"n": 2.0}, TypeError, "n is 2.0"),
+        ({"n": 2**33}, (ValueError, MemoryError), "."),
+        ({"d": 0}, ValueError, "0"),
+        ({"d": 21202}, ValueError, "21202.*21201"),
+        ({"pattern": "halton", "d": 6543}, ValueError, "6543.*6542"),
+        ({"seed": -1}, ValueError, "seed"),
+        ({"start": -1}, ValueError, "start"),
+        ({"start": 2**32 - 8}, ValueError, "."),
+        ({"scramble": "permuted"}, ValueError, "permuted"),
+        ({"scramble": "owens"}, ValueError, "owens"),
+        ({"scramble": 3}, TypeError, "scramble"),
+        ({"dtype": "float16"}, TypeError, "float16"),
+        ({"threads": 0}, ValueError, "threads"),
+        ({"threads": -1}, ValueError, "threads"),
+        ({"pattern": "jittered", "n": 17}, ValueError, "17"),
+    ],
+)
+def test_bad_input_is_named(options: dict[str, Any], error: Any, match: str) -> None:
+    with pytest.raises(error, match=match):
+        sf.points(**{"pattern": "sobol", "n": 16, "d": 2, **options})

@@ -1,0 +1,221 @@
+# SPDX-FileCopyrightText: 2026 The Sunfleck developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""rng: published vectors, the frozen meanings of seed and stream, out=, state, bad input."""
+
+import copy
+import pickle
+import threading
+from typing import Any
+
+import numpy as np
+import pytest
+
+import sunfleck as sf
+
+NAMES = sorted(sf.RNGS)
+# A seed that every method takes.
+SEED = 12345
+
+
+def test_descriptions_are_one_line_each() -> None:
+    assert {"minstd", "xorshift64", "xorshift64-lrl", "combined", "pcg32", "xoshiro256++", "splitmix64"} <= set(sf.RNGS)
+    assert all(text and "\n" not in text for text in sf.RNGS.values())
+
+
+def test_minstd_gives_the_standards_ten_thousandth_output() -> None:
+    # C++ standard, rand.predef: minstd_rand0, default seed 1.
+    assert sf.Rng("minstd", seed=1).bits(10_000)[-1] == 1043618065
+
+
+def test_pcg32_gives_its_authors_demonstration() -> None:
+    # O'Neill's pcg32-demo, seeded (42, 54).
+    expected = [0xA15C02B7, 0x7B47F409, 0xBA1D3330, 0x83D2F293, 0xBFA4784B, 0xCBED606E]
+    assert sf.Rng("pcg32", seed=42, stream=54).bits(6).tolist() == expected
+
+
+def test_splitmix64_gives_the_published_words() -> None:
+    expected = [6457827717110365317, 3203168211198807973]
+    assert sf.Rng("splitmix64", seed=1234567).bits(2, dtype="uint64").tolist() == expected
+
+
+def test_a_64_bit_draw_gives_its_low_half_first() -> None:
+    halves = sf.Rng("splitmix64", seed=SEED).bits(2)
+    whole = sf.Rng("splitmix64", seed=SEED).bits(dtype="uint64")
+    assert whole == int(halves[0]) | int(halves[1]) << 32
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("dtype", ["float32", "float64"])
+def test_random_is_uniform_in_the_half_open_interval(name: str, dtype: str) -> None:
+    x = sf.Rng(name, seed=SEED).random(100_000, dtype=dtype)
+    assert x.dtype == dtype
+    assert x.min() >= 0
+    assert x.max() < 1
+    # The mean's standard error is 1 / sqrt(12 * 100,000) = 9.1e-4; five of them.
+    assert abs(float(x.mean(dtype=np.float64)) - 0.5) < 5 * 9.2e-4
+
+
+def test_float32_is_the_top_24_bits() -> None:
+    bits = sf.Rng("pcg32", seed=SEED).bits(1000)
+    assert np.array_equal(sf.Rng("pcg32", seed=SEED).random(1000, "float32"), (bits >> 8) * np.float32(2**-24))
+
+
+def test_shapes() -> None:
+    rng = sf.Rng("pcg32", seed=SEED)
+    assert isinstance(rng.random(), float)
+    assert isinstance(rng.bits(), int)
+    assert rng.random((2, 3)).shape == (2, 3)
+    assert rng.random([4]).shape == (4,)
+    assert rng.bits(0).shape == (0,)
+    assert rng.random(()).shape == ()
+
+
+def test_calls_may_be_split_anywhere() -> None:
+    for name in NAMES:
+        rng = sf.Rng(name, seed=SEED)
+        parts = [rng.bits(k) for k in (1, 2, 3, 5, 1000)]
+        assert np.array_equal(np.concatenate(parts), sf.Rng(name, seed=SEED).bits(1011)), name
+
+
+def test_out_is_filled_in_place() -> None:
+    out = np.zeros((3, 5), dtype=np.float64)
+    result = sf.Rng("pcg32", seed=SEED).random(out=out)
+    assert result is out
+    assert np.array_equal(out, sf.Rng("pcg32", seed=SEED).random((3, 5)))
+    view = np.zeros(10, dtype=np.uint64)[2:7]
+    assert sf.Rng("pcg32", seed=SEED).bits(5, "uint64", out=view) is view
+    assert view.all()
+
+
+def read_only(array: np.ndarray) -> np.ndarray:
+    array.flags.writeable = False
+    return array
+
+
+@pytest.mark.parametrize(
+    ("out", "error"),
+    [
+        (np.zeros(5, dtype=np.float32), TypeError),
+        (np.zeros(5, dtype=">f8"), TypeError),
+        ([0.0] * 5, TypeError),
+        (np.zeros(4), ValueError),
+        (np.zeros((5, 1)), ValueError),
+        (np.zeros(10)[::2], ValueError),
+        (read_only(np.zeros(5)), ValueError),
+    ],
+)
+def test_out_that_would_need_a_copy_is_refused_and_draws_nothing(out: Any, error: type[Exception]) -> None:
+    rng = sf.Rng("pcg32", seed=SEED)
+    with pytest.raises(error, match="out"):
+        rng.random(5, out=out)
+    assert rng.bits() == sf.Rng("pcg32", seed=SEED).bits()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_streams_and_seeds_differ(name: str) -> None:
+    words = {sf.Rng(name, seed=seed, stream=stream).bits(dtype="uint64") for seed in (1, 2) for stream in range(5)}
+    assert len(words) == 10
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_seed_of_its_own_is_recorded(name: str) -> None:
+    rng, other = sf.Rng(name), sf.Rng(name)
+    assert rng.seed != other.seed
+    assert np.array_equal(rng.bits(10), sf.Rng(name, seed=rng.seed).bits(10))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_reset_starts_again(name: str) -> None:
+    rng = sf.Rng(name, seed=SEED, stream=3)
+    first = rng.bits(7)
+    rng.reset()
+    assert np.array_equal(rng.bits(7), first)
+    assert (rng.name, rng.seed, rng.stream) == (name, SEED, 3)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_skip_passes_over_draws_or_says_that_it_cannot(name: str) -> None:
+    drawn, skipped = sf.Rng(name, seed=SEED), sf.Rng(name, seed=SEED)
+    drawn.bits(1000, dtype="uint32" if name in ("minstd", "pcg32") else "uint64")
+    try:
+        skipped.skip(1000)
+    except NotImplementedError:
+        assert np.array_equal(skipped.bits(10), sf.Rng(name, seed=SEED).bits(10))
+    else:
+        assert np.array_equal(skipped.bits(10), drawn.bits(10))
+
+
+def test_some_methods_skip() -> None:
+    for name in ("minstd", "pcg32", "splitmix64"):
+        sf.Rng(name, seed=SEED).skip(2**60)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_children_differ_and_do_not_depend_on_use(name: str) -> None:
+    fresh, used = sf.Rng(name, seed=SEED), sf.Rng(name, seed=SEED)
+    used.bits(1001)
+    children = fresh.spawn(4) + fresh.spawn(4)
+    assert [c.bits(dtype="uint64") for c in children] == [c.bits(dtype="uint64") for c in used.spawn(8)]
+    assert len({c.bits(dtype="uint64") for c in children}) == 8
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_state_pickle_and_copy_go_on_where_they_were(name: str) -> None:
+    rng = sf.Rng(name, seed=SEED)
+    rng.bits(3)  # an odd count: a 64-bit method has half a draw waiting
+    twins = [sf.Rng.from_state(rng.state), pickle.loads(pickle.dumps(rng)), copy.deepcopy(rng)]
+    expected = rng.bits(9).tolist()
+    for twin in twins:
+        assert (twin.name, twin.seed, twin.stream) == (name, SEED, 0)
+        assert twin.bits(9).tolist() == expected
+
+
+def test_threads_take_turns() -> None:
+    rng = sf.Rng("splitmix64", seed=SEED)
+    drawn: list[np.ndarray] = []
+
+    def draw() -> None:
+        for _ in range(200):
+            drawn.append(rng.bits(500, dtype="uint64"))
+
+    threads = [threading.Thread(target=draw) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    expected = sf.Rng("splitmix64", seed=SEED).bits(4 * 200 * 500, dtype="uint64")
+    assert np.array_equal(np.sort(np.concatenate(drawn)), np.sort(expected))
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "match"),
+    [
+        (lambda: sf.Rng("pcg33", seed=1), ValueError, "pcg33.*pcg32"),
+        (lambda: sf.Rng("pcg33"), ValueError, "pcg33"),
+        (lambda: sf.Rng(3, seed=1), TypeError, "name"),  # type: ignore[arg-type]
+        (lambda: sf.Rng("pcg32", seed=-1), ValueError, "seed"),
+        (lambda: sf.Rng("pcg32", seed=2**64), ValueError, "seed"),
+        (lambda: sf.Rng("pcg32", seed=1.5), TypeError, "seed"),  # type: ignore[arg-type]
+        (lambda: sf.Rng("pcg32", seed="1"), TypeError, "seed"),  # type: ignore[arg-type]
+        (lambda: sf.Rng("minstd", seed=0), ValueError, "0"),
+        (lambda: sf.Rng("minstd", seed=2**31 - 1), ValueError, "2147483647"),
+        (lambda: sf.Rng("xorshift64", seed=0), ValueError, "0"),
+        (lambda: sf.Rng("pcg32", seed=1, stream=2**63), ValueError, "stream"),
+        (lambda: sf.Rng("pcg32", seed=1).random(-1), ValueError, "-1"),
+        (lambda: sf.Rng("pcg32", seed=1).random(2.0), TypeError, "shape"),  # type: ignore[call-overload]
+        (lambda: sf.Rng("pcg32", seed=1).random((1 << 40, 1 << 40)), MemoryError, "shape"),
+        (lambda: sf.Rng("pcg32", seed=1).random(2, dtype="float16"), TypeError, "float16"),
+        (lambda: sf.Rng("pcg32", seed=1).random(2, dtype="uint32"), TypeError, "uint32"),
+        (lambda: sf.Rng("pcg32", seed=1).bits(2, dtype="int32"), TypeError, "int32"),
+        (lambda: sf.Rng("pcg32", seed=1).bits(2, dtype="nonsense"), TypeError, "nonsense"),
+        (lambda: sf.Rng("pcg32", seed=1).skip(-1), ValueError, "count"),
+        (lambda: sf.Rng("pcg32", seed=1).spawn(-1), ValueError, "count"),
+        (lambda: sf.Rng.from_state({}), ValueError, "state"),
+        (lambda: sf.Rng.from_state({"name": "pcg32", "words": [1]}), ValueError, "1"),
+        (lambda: sf.Rng.from_state({"name": "xoshiro256++", "words": [0] * 8}), ValueError, "."),
+    ],
+)
+def test_bad_input_is_named(call: Any, error: type[Exception], match: str) -> None:
+    with pytest.raises(error, match=match):
+        call()
