@@ -55,7 +55,7 @@ static inline double sf_angle_2pi_f64(double y, double x) {
 }
 
 /* log(1 + f) = f - s (f - R(s^2)) with s = f / (2 + f), from the series of atanh. */
-static inline double sf_log_f64(double x) {
+static inline double sf_log_with_f64(double x, double rest) {
     int64_t bits;
     memcpy(&bits, &x, 8);
     int32_t k = ((int32_t)((uint64_t)bits >> 32) - 0x3fe6a09e) >> 20;
@@ -66,12 +66,14 @@ static inline double sf_log_f64(double x) {
     double s = f / (2.0 + f), t = s * s;
     double p = 0x1.c71c62c42db89p-3 + t * (0x1.7462be245eae4p-3 + t * (0x1.39fd25d62ab13p-3 + t * 0x1.2b6776a1bf15dp-3));
     p = t * (0x1.5555555555558p-1 + t * (0x1.99999999951f5p-2 + t * (0x1.2492492e0b70cp-2 + t * p)));
-    return e * 0x1.62e42fefap-1 + (f - (s * (f - p) - e * 0x1.cf79abc9e3b3ap-40));
+    return e * 0x1.62e42fefap-1 + (f - (s * (f - p) - (e * 0x1.cf79abc9e3b3ap-40 + rest)));
 }
+
+static inline double sf_log_f64(double x) { return sf_log_with_f64(x, 0.0); }
 
 static inline double sf_log1m_f64(double s) {
     double v = 1.0 - s, lost = (1.0 - v) - s;
-    return sf_log_f64(v) + lost;
+    return sf_log_with_f64(v, lost + lost * s);
 }
 
 static inline double sf_exp_clamp_f64(double x) {

@@ -55,6 +55,9 @@ static inline size_t sf_atomic_load(const sf_atomic_size *a) {
     return __atomic_load_n(&a->value, __ATOMIC_ACQUIRE);
 }
 
+/* How many bits of x are 1. */
+static inline unsigned sf_count_bits(uint32_t x) { return (unsigned)__builtin_popcount(x); }
+
 /* Seconds on a clock that never steps back. */
 static inline double sf_seconds_now(void) {
     struct timespec t;

@@ -80,8 +80,8 @@ static inline float sf_angle_2pi(float y, float x) {
     return a < SF_UNIT_MAX_F ? a : SF_UNIT_MAX_F;
 }
 
-/* log x, x positive, finite and normal. */
-static inline float sf_log(float x) {
+/* log x + rest, x positive, finite and normal, rest below an ulp of x. */
+static inline float sf_log_with(float x, float rest) {
     /* x = 2^e (1 + f) with 1 + f in [sqrt(1/2), sqrt 2); 0x3f3504f3 is sqrt(1/2). */
     int32_t bits, mantissa;
     memcpy(&bits, &x, 4);
@@ -98,13 +98,17 @@ static inline float sf_log(float x) {
                                   f * (0x1.22ea5ap-3f +
                                        f * (-0x1.0cda32p-3f + f * (0x1.048f72p-3f + f * -0x1.3a4ff6p-4f)))))));
     /* ln 2 in two parts, the first of 9 bits, so that its product with e is exact. */
-    return e * 0x1.63p-1f + (f + (f * f * p + e * -0x1.bd0106p-13f));
+    return e * 0x1.63p-1f + (f + (f * f * p + (e * -0x1.bd0106p-13f + rest)));
 }
+
+/* log x, x positive, finite and normal. */
+static inline float sf_log(float x) { return sf_log_with(x, 0.0f); }
 
 /* log(1 - s), s in [0,1): finite everywhere, and as accurate for the smallest s. */
 static inline float sf_log1m(float s) {
-    float v = 1.0f - s, lost = (1.0f - v) - s; /* exact; log(v + lost) = log v + lost, nearly */
-    return sf_log(v) + lost;
+    /* `lost` is exactly what rounding took from v; log(v + lost) = log v + lost / v, nearly. */
+    float v = 1.0f - s, lost = (1.0f - v) - s;
+    return sf_log_with(v, lost + lost * s);
 }
 
 /* x held within +-87, by its bits: a comparison of floats would be threaded into branches. */

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* The way of a batch through the plan's stages. */
+
+#include "batch.h"
+
+#include "coordinates_kernels.h"
+#include "shade_kernels.h"
+
+/* The batch's run in progress: who works on what. */
+typedef struct run {
+    sf_batch *batch;
+    const sf_render_context *context;
+    const sf_coordinates_kernels *coordinates;
+    const sf_shade_kernels *shade;
+    uint32_t group; /* the plan's next group of dimensions */
+} run;
+
+static bool has(const run *r, sf_stage stage) { return sf_plan_has(&r->context->scene->plan, stage); }
+
+/* Fills `out` with the coordinates of the plan's next group, which is for `use`. */
+static void next_coordinates(run *r, sf_dimension_use use, float (*out)[SF_PATHS]) {
+    const sf_plan *plan = &r->context->scene->plan;
+    while (plan->dimensions[r->group].use != use) ++r->group;
+    const sf_coordinate_source *source = r->context->coordinates.sources + r->group++;
+    r->coordinates->fill(&r->context->coordinates, source, r->batch->blocks, r->batch->block_count, out);
+}
+
+static void trace_camera(run *r) {
+    sf_batch *b = r->batch;
+    const sf_scene *scene = r->context->scene;
+    uint32_t active[SF_BLOCKS];
+    for (uint32_t i = 0; i < b->block_count; ++i) active[i] = b->blocks[i].active;
+    next_coordinates(r, SF_DIMENSION_PIXEL, b->coordinate);
+    bool lens = has(r, SF_STAGE_LENS);
+    if (lens) next_coordinates(r, SF_DIMENSION_LENS, b->coordinate_by_ray);
+    r->shade->camera(b, &r->context->camera, r->context->filter, lens ? b->coordinate_by_ray : NULL);
+    sf_trace_nearest(b, scene, b->block_count, active, SF_COHERENT);
+    r->shade->first_radiance(b, scene);
+}
+
+/* Light sampled from the vertices of bounce `bounce`. */
+static void connect_lights(run *r, uint32_t bounce, uint32_t count) {
+    const sf_plan *plan = &r->context->scene->plan;
+    next_coordinates(r, SF_DIMENSION_LIGHT, r->batch->coordinate);
+    if (has(r, SF_STAGE_CHOOSE_LIGHT)) next_coordinates(r, SF_DIMENSION_CHOICE, r->batch->coordinate + 2);
+    bool weigh = bounce < plan->max_bounces || has(r, SF_STAGE_LAST_SURFACE);
+    r->shade->light(r->batch, r->context->scene, count, weigh);
+    uint32_t rays = r->shade->sort_shadow_rays(r->batch, count);
+    sf_trace_shadow(r->batch, r->context->scene, rays);
+}
+
+/* Surface-sampled rays from the vertices, and the radiance that they find. */
+static void trace_surface(run *r, uint32_t count) {
+    uint32_t active[SF_BLOCKS], packets = (count + SF_LANES - 1) / SF_LANES;
+    for (uint32_t p = 0; p < packets; ++p) active[p] = 0xffffu;
+    if (count % SF_LANES) active[packets - 1] = (1u << count % SF_LANES) - 1;
+    next_coordinates(r, SF_DIMENSION_SURFACE, r->batch->coordinate);
+    r->shade->surface(r->batch, count);
+    sf_trace_nearest(r->batch, r->context->scene, packets, active, SF_INCOHERENT);
+    r->shade->later_radiance(r->batch, r->context->scene, count);
+}
+
+void sf_batch_run(sf_batch *batch, const sf_render_context *context) {
+    run r = {.batch = batch,
+             .context = context,
+             .coordinates = sf_coordinates_kernels_at(context->isa),
+             .shade = sf_shade_kernels_at(context->isa)};
+    const sf_plan *plan = &context->scene->plan;
+    trace_camera(&r);
+    bool light = has(&r, SF_STAGE_LIGHT);
+    uint32_t count = 0;
+    for (uint32_t bounce = 1; bounce <= plan->max_bounces; ++bounce) {
+        bool onward = has(&r, bounce < plan->max_bounces ? SF_STAGE_SURFACE : SF_STAGE_LAST_SURFACE);
+        if (!light && !onward) break;
+        if (bounce == 1)
+            r.shade->first_vertex(batch, context->scene);
+        else
+            r.shade->later_vertex(batch, context->scene, count);
+        count = r.shade->compact(batch, bounce == 1 ? batch->block_count * SF_LANES : count);
+        if (count == 0) break;
+        if (light) connect_lights(&r, bounce, count);
+        if (onward) trace_surface(&r, count);
+    }
+    r.shade->gather_statistics(batch);
+}

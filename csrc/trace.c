@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* Rays to Embree and back, in packets of 16. The width and the flags of a stage never change, so
+ * that Embree's answers do not depend on which rays share a packet. */
+
+#include <math.h>
+#include <string.h>
+
+#include "batch.h"
+
+static void set_valid(int valid[SF_LANES], uint32_t bits) {
+    for (uint32_t l = 0; l < SF_LANES; ++l) valid[l] = -(int)(bits >> l & 1u);
+}
+
+static void take_hits(sf_batch *b, const struct RTCRayHit16 *rays, uint32_t first, uint32_t miss) {
+    memcpy(b->distance + first, rays->ray.tfar, sizeof rays->ray.tfar);
+    memcpy(b->hit_normal[0] + first, rays->hit.Ng_x, sizeof rays->hit.Ng_x);
+    memcpy(b->hit_normal[1] + first, rays->hit.Ng_y, sizeof rays->hit.Ng_y);
+    memcpy(b->hit_normal[2] + first, rays->hit.Ng_z, sizeof rays->hit.Ng_z);
+    for (int l = 0; l < SF_LANES; ++l) {
+        uint32_t mesh = rays->hit.geomID[l];
+        b->mesh[first + l] = mesh < miss ? mesh : miss;
+    }
+}
+
+void sf_trace_nearest(sf_batch *b, const sf_scene *scene, uint32_t packets, const uint32_t *active,
+                      sf_coherence coherence) {
+    SF_ALIGNED(struct RTCRayHit16) rays;
+    SF_ALIGNED(int) valid[SF_LANES];
+    memset(&rays, 0, sizeof rays);
+    memset(rays.ray.mask, 0xff, sizeof rays.ray.mask);
+    for (uint32_t p = 0; p < packets; ++p) {
+        uint32_t first = p * SF_LANES;
+        memcpy(rays.ray.org_x, b->origin[0] + first, sizeof rays.ray.org_x);
+        memcpy(rays.ray.org_y, b->origin[1] + first, sizeof rays.ray.org_y);
+        memcpy(rays.ray.org_z, b->origin[2] + first, sizeof rays.ray.org_z);
+        memcpy(rays.ray.dir_x, b->direction[0] + first, sizeof rays.ray.dir_x);
+        memcpy(rays.ray.dir_y, b->direction[1] + first, sizeof rays.ray.dir_y);
+        memcpy(rays.ray.dir_z, b->direction[2] + first, sizeof rays.ray.dir_z);
+        for (int l = 0; l < SF_LANES; ++l) rays.ray.tfar[l] = INFINITY;
+        memset(rays.hit.geomID, 0xff, sizeof rays.hit.geomID);
+        memset(rays.hit.instID, 0xff, sizeof rays.hit.instID);
+        set_valid(valid, active[p]);
+        sf_embree_intersect16(scene->embree, valid, &rays, coherence);
+        take_hits(b, &rays, first, scene->mesh_table.miss);
+    }
+}
+
+/* One packet of shadow rays, `lanes` of them. */
+static void trace_shadow_packet(sf_batch *b, const sf_scene *scene, const uint32_t *order, uint32_t lanes) {
+    SF_ALIGNED(struct RTCRay16) rays;
+    SF_ALIGNED(int) valid[SF_LANES];
+    for (uint32_t l = 0; l < SF_LANES; ++l) {
+        uint32_t i = order[l < lanes ? l : 0];
+        rays.org_x[l] = b->point[0][i];
+        rays.org_y[l] = b->point[1][i];
+        rays.org_z[l] = b->point[2][i];
+        rays.dir_x[l] = b->to_light[0][i];
+        rays.dir_y[l] = b->to_light[1][i];
+        rays.dir_z[l] = b->to_light[2][i];
+    }
+    memset(rays.tnear, 0, sizeof rays.tnear);
+    memset(rays.time, 0, sizeof rays.time);
+    memset(rays.mask, 0xff, sizeof rays.mask);
+    memset(rays.id, 0, sizeof rays.id);
+    memset(rays.flags, 0, sizeof rays.flags);
+    for (int l = 0; l < SF_LANES; ++l) rays.tfar[l] = 1;
+    set_valid(valid, lanes < SF_LANES ? (1u << lanes) - 1 : 0xffffu);
+    sf_embree_occluded16(scene->embree, valid, &rays, SF_INCOHERENT);
+    for (uint32_t l = 0; l < lanes; ++l) {
+        uint32_t i = order[l], path = b->path[i];
+        float arrives = rays.tfar[l] > 0 ? 1.0f : 0.0f;
+        for (int c = 0; c < 3; ++c) b->radiance[c][path] += arrives * b->contribution[c][i];
+    }
+}
+
+void sf_trace_shadow(sf_batch *b, const sf_scene *scene, uint32_t count) {
+    for (uint32_t first = 0; first < count; first += SF_LANES)
+        trace_shadow_packet(b, scene, b->order + first, count - first < SF_LANES ? count - first : SF_LANES);
+}

@@ -1,0 +1,24 @@
+# SPDX-FileCopyrightText: 2026 The Sunfleck developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""What the tests of several modules start from."""
+
+import pytest
+
+import sunfleck as sf
+
+
+@pytest.fixture(scope="session")
+def penumbra() -> sf.Scene:
+    return sf.scenes.penumbra()
+
+
+@pytest.fixture(scope="session")
+def cornell() -> sf.Scene:
+    return sf.scenes.cornell()
+
+
+@pytest.fixture(scope="session")
+def picture(penumbra: sf.Scene) -> sf.Image:
+    """A small adaptive picture, for what is done with pictures."""
+    return sf.render(penumbra, 40, 24, tolerance=0.05, seed=7)
