@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "film.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "error.h"
+
+#define MAX_ATTRIBUTES 40
+#define TEXT_SIZE 96
+
+const char *sf_pixel_filter_name(sf_pixel_filter filter) {
+    static const char *const names[] = {"box", "tent", "gaussian"};
+    return (unsigned)filter < 3 ? names[filter] : NULL;
+}
+
+const char *sf_stop_rule_name(sf_stop_rule rule) { return rule == SF_STOP_STANDARD_ERROR ? "standard-error" : NULL; }
+
+const char *sf_seed_policy_name(sf_seed_policy policy) {
+    static const char *const names[] = {"pixel", "thread", "shared"};
+    return (unsigned)policy < 3 ? names[policy] : NULL;
+}
+
+const char *sf_stop_reason_name(sf_stop_reason reason) {
+    static const char *const names[] = {"fixed", "met", "max samples", "out of time", "suspicious", "interrupted"};
+    return (unsigned)reason < SF_STOP_REASON_COUNT ? names[reason] : NULL;
+}
+
+static uint32_t round_up(uint32_t x) { return (x + SF_CELL_SIZE - 1) / SF_CELL_SIZE * SF_CELL_SIZE; }
+static uint32_t smaller(uint32_t a, uint32_t b) { return a < b ? a : b; }
+
+static sf_status allocate_arrays(sf_film *film, sf_error *error) {
+    size_t traced = (size_t)film->width * film->height, pixels = (size_t)film->crop_width * film->crop_height;
+    film->pixels = calloc(traced, sizeof *film->pixels);
+    film->color = malloc(pixels * 3 * sizeof *film->color);
+    film->alpha = malloc(pixels * sizeof *film->alpha);
+    film->half_width = malloc(pixels * sizeof *film->half_width);
+    film->samples = malloc(pixels * sizeof *film->samples);
+    film->reason = malloc(pixels);
+    if (film->pixels && film->color && film->alpha && film->half_width && film->samples && film->reason)
+        return SF_STATUS_OK;
+    return sf_fail_memory(error, "the film", traced * sizeof *film->pixels + pixels * 25);
+}
+
+sf_status sf_film_create(const sf_render_options *options, sf_film **out, sf_error *error) {
+    sf_film *film = calloc(1, sizeof *film);
+    if (!film) return sf_fail_memory(error, "a film", sizeof *film);
+    const uint32_t *crop = options->crop;
+    film->crop_x0 = crop[0];
+    film->crop_y0 = crop[1];
+    film->crop_width = crop[2] - crop[0];
+    film->crop_height = crop[3] - crop[1];
+    film->x0 = crop[0] / SF_CELL_SIZE * SF_CELL_SIZE;
+    film->y0 = crop[1] / SF_CELL_SIZE * SF_CELL_SIZE;
+    film->width = smaller(round_up(crop[2]), options->width) - film->x0;
+    film->height = smaller(round_up(crop[3]), options->height) - film->y0;
+    sf_status status = allocate_arrays(film, error);
+    if (status) {
+        sf_film_destroy(film);
+        film = NULL;
+    }
+    *out = film;
+    return status;
+}
+
+void sf_film_destroy(sf_film *film) {
+    if (!film) return;
+    free(film->pixels);
+    free(film->color);
+    free(film->alpha);
+    free(film->half_width);
+    free(film->samples);
+    free(film->reason);
+    for (size_t i = 0; i < film->attribute_count; ++i) free((char *)film->attributes[i].text);
+    free(film->attributes);
+    free(film);
+}
+
+void sf_film_add(sf_film_pixel *pixel, const sf_block_statistics *block) {
+    sf_vector_moments_merge(&pixel->moments, &block->moments);
+    pixel->hits += block->hits;
+}
+
+float sf_film_half_width(const sf_film_pixel *pixel, double z) {
+    return (float)(z * sf_vector_moments_standard_error(&pixel->moments) * sqrt(1.0 / 3.0));
+}
+
+static void resolve_pixel(sf_film *film, const sf_film_pixel *pixel, size_t i, uint32_t x, uint32_t y) {
+    sf_film_summary *summary = &film->summary;
+    const sf_vector_moments *moments = &pixel->moments;
+    for (int c = 0; c < 3; ++c) film->color[3 * i + c] = (float)moments->mean[c];
+    film->alpha[i] = moments->count ? (float)((double)pixel->hits / (double)moments->count) : 0;
+    film->half_width[i] = pixel->half_width;
+    film->samples[i] = (uint32_t)moments->count;
+    film->reason[i] = pixel->reason;
+    summary->samples += moments->count + moments->nonfinite;
+    summary->nonfinite_samples += moments->nonfinite;
+    ++summary->reasons[pixel->reason];
+    summary->mean_half_width += (double)pixel->half_width;
+    if (!((double)pixel->half_width > summary->worst_half_width)) return;
+    summary->worst_half_width = (double)pixel->half_width;
+    summary->worst_x = x;
+    summary->worst_y = y;
+}
+
+void sf_film_resolve(sf_film *film) {
+    sf_film_summary *summary = &film->summary;
+    summary->pixels = (uint64_t)film->crop_width * film->crop_height;
+    summary->worst_half_width = -1;
+    for (uint32_t y = 0; y < film->crop_height; ++y)
+        for (uint32_t x = 0; x < film->crop_width; ++x) {
+            size_t at = (size_t)(y + film->crop_y0 - film->y0) * film->width + (x + film->crop_x0 - film->x0);
+            resolve_pixel(film, film->pixels + at, (size_t)y * film->crop_width + x, x + film->crop_x0,
+                          y + film->crop_y0);
+        }
+    summary->mean_half_width /= (double)summary->pixels;
+}
+
+uint32_t sf_film_width(const sf_film *film) { return film->crop_width; }
+uint32_t sf_film_height(const sf_film *film) { return film->crop_height; }
+size_t sf_film_channel_count(const sf_film *film) {
+    (void)film;
+    return 7;
+}
+
+sf_channel sf_film_channel(const sf_film *film, size_t index) {
+    static const char *const colors[] = {"R", "G", "B"};
+    sf_channel channel = {.type = SF_CHANNEL_FLOAT32, .pixel_stride = 4};
+    switch (index) {
+        case 0:
+        case 1:
+        case 2:
+            channel.name = colors[index];
+            channel.data = film->color + index;
+            channel.pixel_stride = 12;
+            break;
+        case 3:
+            channel.name = "A";
+            channel.data = film->alpha;
+            break;
+        case 4:
+            channel.name = "samples";
+            channel.type = SF_CHANNEL_UINT32;
+            channel.data = film->samples;
+            break;
+        case 5:
+            channel.name = "half_width";
+            channel.data = film->half_width;
+            break;
+        case 6:
+            channel.name = "stop_reason";
+            channel.type = SF_CHANNEL_UINT8;
+            channel.data = film->reason;
+            channel.pixel_stride = 1;
+            break;
+        default: break;
+    }
+    channel.row_stride = channel.pixel_stride * film->crop_width;
+    return channel;
+}
+
+size_t sf_film_attribute_count(const sf_film *film) { return film->attribute_count; }
+
+sf_attribute sf_film_attribute(const sf_film *film, size_t index) { return film->attributes[index]; }
+
+sf_film_summary sf_film_summarize(const sf_film *film) { return film->summary; }
+
+/* Adds an attribute; `film->attributes` has room for MAX_ATTRIBUTES. A missing text is seen at
+ * the end, by sf_film_describe. */
+static void describe(sf_film *film, const char *name, const char *format, ...) SF_PRINTF(3, 4);
+static void describe(sf_film *film, const char *name, const char *format, ...) {
+    char *text = malloc(TEXT_SIZE);
+    film->attributes[film->attribute_count++] = (sf_attribute){name, text};
+    if (!text) return;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, TEXT_SIZE, format, arguments);
+    va_end(arguments);
+}
+
+static void describe_options(sf_film *film, const sf_render_options *o) {
+    describe(film, "width", "%" PRIu32, o->width);
+    describe(film, "height", "%" PRIu32, o->height);
+    describe(film, "crop", "%" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32, o->crop[0], o->crop[1], o->crop[2], o->crop[3]);
+    describe(film, "spp", "%" PRIu32, o->spp);
+    describe(film, "relative_tolerance", "%.17g", o->relative_tolerance);
+    describe(film, "absolute_tolerance", "%.17g", o->absolute_tolerance);
+    describe(film, "confidence", "%.17g", o->confidence);
+    describe(film, "min_spp", "%" PRIu32, o->min_spp);
+    describe(film, "max_spp", "%" PRIu32, o->max_spp);
+    describe(film, "seconds", "%.17g", o->seconds);
+    describe(film, "pattern", "%s", sf_pattern_name(o->pattern));
+    describe(film, "pixel_filter", "%s", sf_pixel_filter_name(o->pixel_filter));
+    describe(film, "stop", "%s", sf_stop_rule_name(o->stop));
+    describe(film, "seeds", "%s", sf_seed_policy_name(o->seeds));
+    describe(film, "seed", "%" PRIu64, o->seed);
+    describe(film, "threads", "%" PRIu32, o->threads);
+    describe(film, "tile_size", "%" PRIu32, o->tile_size);
+}
+
+static void describe_outcome(sf_film *film) {
+    const sf_film_summary *s = &film->summary;
+    describe(film, "level", "%.17g", s->level);
+    describe(film, "tolerance", "%.17g", s->tolerance);
+    describe(film, "total_samples", "%" PRIu64, s->samples);
+    describe(film, "traced_samples", "%" PRIu64, s->traced_samples);
+    describe(film, "nonfinite_samples", "%" PRIu64, s->nonfinite_samples);
+    describe(film, "worst_half_width", "%.9g", s->worst_half_width);
+    describe(film, "worst_pixel", "%" PRIu32 " %" PRIu32, s->worst_x, s->worst_y);
+    describe(film, "rounds", "%" PRIu32, s->rounds);
+    describe(film, "render_seconds", "%.6g", s->seconds);
+}
+
+sf_status sf_film_describe(sf_film *film, const sf_scene *scene, const sf_render_options *options, sf_isa isa,
+                           sf_error *error) {
+    sf_scene_info info;
+    sf_status status = sf_scene_get_info(scene, &info, error);
+    if (status) return status;
+    film->attributes = malloc(MAX_ATTRIBUTES * sizeof *film->attributes);
+    if (!film->attributes) return sf_fail_memory(error, "the film's attributes", MAX_ATTRIBUTES * sizeof *film->attributes);
+    describe(film, "version", "%s", sf_version());
+    describe(film, "instruction_set", "%s", sf_isa_name(isa));
+    describe(film, "scene_hash", "%016" PRIx64, info.hash);
+    describe_options(film, options);
+    describe_outcome(film);
+    for (size_t i = 0; i < film->attribute_count; ++i)
+        if (!film->attributes[i].text) return sf_fail_memory(error, "the film's attributes", TEXT_SIZE);
+    return SF_STATUS_OK;
+}
