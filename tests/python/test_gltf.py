@@ -133,9 +133,7 @@ def test_quantized_positions(document: Document, tmp_path: Path) -> None:
     assert corners(document.load(tmp_path))[0][1] == [32767, 0, 0]
 
 
-def test_lines_and_points_are_left_out(
-    document: Document, tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_lines_and_points_are_left_out(document: Document, tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     document.tree["meshes"][0]["primitives"].append({"attributes": {"POSITION": 0}, "mode": 1})
     with caplog.at_level("INFO", logger="sunfleck"):
         assert len(document.load(tmp_path).meshes) == 2  # the triangle, and the light it is given
@@ -222,9 +220,7 @@ def test_no_material_is_mid_grey(document: Document, tmp_path: Path) -> None:
     assert document.load(tmp_path).meshes[0].albedo == (0.5, 0.5, 0.5)
 
 
-def test_textures_are_said_not_to_be_read(
-    document: Document, tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_textures_are_said_not_to_be_read(document: Document, tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     document.material(
         pbrMetallicRoughness={"baseColorTexture": {"index": 0}, "baseColorFactor": [1, 0.5, 1, 1]},
         emissiveFactor=[1, 1, 1],
@@ -314,9 +310,7 @@ def change(path: str, value: Any) -> Any:
         (change("meshes/0/primitives", []), ValueError, "no triangles"),
     ],
 )
-def test_what_is_malformed_is_refused(
-    document: Document, tmp_path: Path, spoil: Any, error: Any, match: str
-) -> None:
+def test_what_is_malformed_is_refused(document: Document, tmp_path: Path, spoil: Any, error: Any, match: str) -> None:
     spoil(document)
     with pytest.raises(error, match=match):
         document.load(tmp_path)

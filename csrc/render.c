@@ -1,0 +1,381 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* The render: rounds over tiles, and the decisions between them.
+ *
+ * A round brings every pixel that is still active from `from` to `to` samples; threads take tiles
+ * from a counter. Decisions fall between rounds only, from each pixel's own statistics and the
+ * frame's level, so that no bit of the film depends on threads or tiles. */
+
+#include "sunfleck/render.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "batch.h"
+#include "error.h"
+#include "film.h"
+#include "pool.h"
+#include "render_options.h"
+#include "sunfleck/rng.h"
+
+#define CELL_PIXELS (SF_CELL_SIZE * SF_CELL_SIZE)
+
+enum { RUNNING = 0, OUT_OF_TIME, INTERRUPTED };
+
+/* What belongs to one thread, on cache lines of its own. */
+typedef struct render_worker {
+    SF_ALIGNED(sf_atomic_size) samples; /* traced so far */
+    sf_rng stream;                      /* seeds = thread, shared */
+    sf_batch batch;
+} render_worker;
+
+typedef struct render {
+    sf_render_context context;
+    sf_render_options options;
+    sf_film *film;
+    sf_pool *pool;
+    render_worker *workers;
+    uint64_t *active; /* by cell of the film: bit m is pixel m of the cell in Morton order */
+    uint32_t cell_columns, cell_rows;
+    uint32_t tile_columns, tile_rows;
+    uint32_t tile_x0, tile_y0; /* of the first tile, in cells of the frame */
+    uint32_t tile_cells;       /* a side */
+    uint32_t *tiles;           /* those with active pixels */
+    size_t tile_count;
+    uint32_t from, to; /* the round's sample counts */
+    double z;          /* standard errors in a half-width */
+    double start, deadline;
+    sf_progress progress;
+    sf_atomic_size state;
+} render;
+
+/* ---- the camera's frame ---- */
+
+static void cross(const double a[3], const double b[3], double out[3]) {
+    for (int c = 0; c < 3; ++c) out[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
+}
+
+static double normalize(double v[3]) {
+    double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int c = 0; c < 3; ++c) v[c] /= length;
+    return length;
+}
+
+static sf_camera_frame frame_camera(const sf_camera *camera, uint32_t width, uint32_t height) {
+    double forward[3], up[3], right[3], distance;
+    for (int c = 0; c < 3; ++c) {
+        forward[c] = (double)camera->target[c] - camera->position[c];
+        up[c] = camera->up[c];
+    }
+    distance = normalize(forward);
+    normalize(up);
+    cross(forward, up, right);
+    normalize(right);
+    cross(right, forward, up);
+    sf_camera_frame frame = {.half_width = 0.5f * (float)width,
+                             .half_height = 0.5f * (float)height,
+                             .pixel = (float)(2 * tan((double)camera->vertical_fov * 3.14159265358979323846 / 360) / height),
+                             .aperture_radius = camera->aperture_radius,
+                             .focus_distance = camera->focus_distance > 0 ? camera->focus_distance : (float)distance};
+    for (int c = 0; c < 3; ++c) {
+        frame.position[c] = camera->position[c];
+        frame.forward[c] = (float)forward[c];
+        frame.right[c] = (float)right[c];
+        frame.up[c] = (float)up[c];
+    }
+    return frame;
+}
+
+/* ---- a round ---- */
+
+/* The even bits of m are x, the odd bits y: 16 pixels in a row are a 4 x 4 square. */
+static uint32_t morton_x(uint32_t m) { return (m & 1u) | (m >> 1 & 2u) | (m >> 2 & 4u); }
+static uint32_t morton_y(uint32_t m) { return morton_x(m >> 1); }
+
+static sf_film_pixel *cell_pixel(const render *r, uint32_t cell, uint32_t m) {
+    uint32_t x = cell % r->cell_columns * SF_CELL_SIZE + morton_x(m), y = cell / r->cell_columns * SF_CELL_SIZE + morton_y(m);
+    return r->film->pixels + (size_t)y * r->film->width + x;
+}
+
+/* Runs the blocks gathered so far and adds them to the film, in their order. */
+static void flush_batch(render *r, render_worker *worker) {
+    sf_batch *batch = &worker->batch;
+    if (batch->block_count == 0) return;
+    sf_batch_run(batch, &r->context);
+    size_t samples = 0;
+    for (uint32_t i = 0; i < batch->block_count; ++i) {
+        sf_film_add(r->film->pixels + batch->blocks[i].pixel, batch->statistics + i);
+        samples += sf_count_bits(batch->blocks[i].active);
+    }
+    batch->block_count = 0;
+    sf_atomic_fetch_add(&worker->samples, samples);
+    if (r->deadline > 0 && sf_seconds_now() >= r->deadline) sf_atomic_store(&r->state, OUT_OF_TIME);
+}
+
+/* The block of pixel m that starts at sample `n`. */
+static sf_block make_block(const render *r, uint32_t cell, uint32_t m, uint64_t key, uint32_t n) {
+    uint32_t x = cell % r->cell_columns * SF_CELL_SIZE + morton_x(m), y = cell / r->cell_columns * SF_CELL_SIZE + morton_y(m);
+    uint32_t base = n / SF_LANES * SF_LANES, end = r->to - base < SF_LANES ? r->to - base : SF_LANES;
+    return (sf_block){.key = key,
+                      .base = base,
+                      .active = ((1u << end) - 1) & ~((1u << (n - base)) - 1),
+                      .x = x + r->film->x0,
+                      .y = y + r->film->y0,
+                      .pixel = y * r->film->width + x};
+}
+
+static void choose_keys(render *r, render_worker *worker, uint32_t cell, uint64_t active, uint64_t keys[CELL_PIXELS]) {
+    for (uint32_t m = 0; m < CELL_PIXELS; ++m) {
+        if (!(active >> m & 1u)) continue;
+        uint64_t x = cell % r->cell_columns * SF_CELL_SIZE + morton_x(m) + r->film->x0;
+        uint64_t y = cell / r->cell_columns * SF_CELL_SIZE + morton_y(m) + r->film->y0;
+        keys[m] = r->options.seeds == SF_SEEDS_PIXEL ? sf_hash64(r->options.seed, y << 32 | x)
+                                                     : sf_rng_next_raw(&worker->stream);
+    }
+}
+
+static void sample_cell(render *r, render_worker *worker, uint32_t cell) {
+    uint64_t active = r->active[cell], keys[CELL_PIXELS];
+    sf_batch *batch = &worker->batch;
+    choose_keys(r, worker, cell, active, keys);
+    for (uint32_t n = r->from; n < r->to; n = n / SF_LANES * SF_LANES + SF_LANES)
+        for (uint32_t m = 0; m < CELL_PIXELS; ++m) {
+            if (!(active >> m & 1u)) continue;
+            batch->blocks[batch->block_count++] = make_block(r, cell, m, keys[m], n);
+            if (batch->block_count < SF_BLOCKS) continue;
+            flush_batch(r, worker);
+            if (sf_atomic_load(&r->state) != RUNNING) return;
+        }
+    flush_batch(r, worker);
+}
+
+/* Calls `visit` for every cell of the tile that has active pixels. */
+static void for_each_cell(render *r, unsigned worker, size_t item, void (*visit)(render *, render_worker *, uint32_t)) {
+    uint32_t tile = r->tiles[item], x0 = r->film->x0 / SF_CELL_SIZE, y0 = r->film->y0 / SF_CELL_SIZE;
+    uint32_t left = r->tile_x0 + tile % r->tile_columns * r->tile_cells;
+    uint32_t top = r->tile_y0 + tile / r->tile_columns * r->tile_cells;
+    for (uint32_t y = top; y < top + r->tile_cells; ++y)
+        for (uint32_t x = left; x < left + r->tile_cells; ++x) {
+            if (x < x0 || y < y0 || x - x0 >= r->cell_columns || y - y0 >= r->cell_rows) continue;
+            uint32_t cell = (y - y0) * r->cell_columns + (x - x0);
+            if (r->active[cell]) visit(r, r->workers + worker, cell);
+        }
+}
+
+static void sample_tile(void *user, unsigned worker, size_t item) {
+    render *r = user;
+    if (sf_atomic_load(&r->state) == RUNNING) for_each_cell(r, worker, item, sample_cell);
+}
+
+/* ---- decisions ---- */
+
+/* Whether the pixel is done, and why. */
+static bool decide_pixel(const render *r, sf_film_pixel *pixel, size_t state) {
+    uint64_t taken = pixel->moments.count + pixel->moments.nonfinite;
+    const sf_render_options *o = &r->options;
+    const sf_film_summary *summary = &r->film->summary;
+    pixel->half_width = sf_film_half_width(pixel, r->z);
+    bool met = !o->spp && summary->tolerance >= 0 && taken >= o->min_spp && (double)pixel->half_width <= summary->tolerance;
+    bool full = taken >= (o->spp ? o->spp : summary->tolerance >= 0 ? o->max_spp : SF_MAX_SPP);
+    pixel->reason = (uint8_t)(met                     ? SF_STOP_MET
+                              : full && o->spp        ? SF_STOP_FIXED
+                              : full                  ? SF_STOP_MAX_SAMPLES
+                              : state == OUT_OF_TIME  ? SF_STOP_OUT_OF_TIME
+                                                      : SF_STOP_INTERRUPTED);
+    bool done = met || full || state != RUNNING;
+    if (done && pixel->moments.nonfinite) pixel->reason = SF_STOP_SUSPICIOUS;
+    return done;
+}
+
+static void decide_cell(render *r, render_worker *worker, uint32_t cell) {
+    (void)worker;
+    size_t state = sf_atomic_load(&r->state);
+    for (uint32_t m = 0; m < CELL_PIXELS; ++m)
+        if (r->active[cell] >> m & 1u && decide_pixel(r, cell_pixel(r, cell, m), state))
+            r->active[cell] &= ~(UINT64_C(1) << m);
+}
+
+static void decide_tile(void *user, unsigned worker, size_t item) { for_each_cell(user, worker, item, decide_cell); }
+
+/* The level: the mean over the crop of (R+G+B)/3, summed in the order of the pixels. */
+static double measure_level(const sf_film *film) {
+    double sum = 0;
+    for (uint32_t y = 0; y < film->crop_height; ++y)
+        for (uint32_t x = 0; x < film->crop_width; ++x) {
+            const sf_film_pixel *pixel = film->pixels +
+                                         (size_t)(y + film->crop_y0 - film->y0) * film->width + (x + film->crop_x0 - film->x0);
+            sum += (pixel->moments.mean[0] + pixel->moments.mean[1] + pixel->moments.mean[2]) / 3;
+        }
+    return sum / ((double)film->crop_width * film->crop_height);
+}
+
+/* Fixes level and tolerance after the first min_spp samples. A negative tolerance: none was asked. */
+static void fix_tolerance(render *r) {
+    const sf_render_options *o = &r->options;
+    sf_film_summary *summary = &r->film->summary;
+    if (r->to < o->min_spp || summary->rounds > 0) return;
+    summary->level = measure_level(r->film);
+    if (o->relative_tolerance > 0 || o->absolute_tolerance > 0)
+        summary->tolerance = fmax(o->absolute_tolerance, o->relative_tolerance * summary->level);
+}
+
+/* The next round's sample count: min_spp, then a quarter more at a time, in whole blocks. */
+static uint32_t next_target(const render *r, uint32_t n) {
+    const sf_render_options *o = &r->options;
+    bool adaptive = r->options.relative_tolerance > 0 || r->options.absolute_tolerance > 0;
+    uint32_t most = o->spp ? o->spp : adaptive ? o->max_spp : SF_MAX_SPP;
+    uint32_t step = n / 4 / SF_LANES * SF_LANES;
+    step = step < SF_LANES ? SF_LANES : step > 256 ? 256 : step;
+    /* Without a clock to watch, nothing is decided before min_spp or during a fixed count. */
+    if (o->seconds == 0 && o->spp) step = 64;
+    uint32_t target = n / SF_LANES * SF_LANES + step;
+    if (adaptive && n < o->min_spp && (o->seconds == 0 || target > o->min_spp)) target = o->min_spp;
+    return target < most ? target : most;
+}
+
+/* ---- the whole ---- */
+
+static void report(render *r, bool round_finished) {
+    if (!r->options.progress) return;
+    sf_progress *p = &r->progress;
+    p->samples = 0;
+    for (uint32_t i = 0; i < r->options.threads; ++i) p->samples += sf_atomic_load(&r->workers[i].samples);
+    p->seconds = sf_seconds_now() - r->start;
+    p->round_finished = round_finished;
+    if (r->options.progress(p, r->options.progress_user) != 0) sf_atomic_store(&r->state, INTERRUPTED);
+}
+
+static void wake(void *user) { report(user, false); }
+
+static void list_tiles(render *r) {
+    r->tile_count = 0;
+    for (uint32_t tile = 0; tile < r->tile_columns * r->tile_rows; ++tile) r->tiles[r->tile_count++] = tile;
+}
+
+static uint64_t count_active(const render *r) {
+    uint64_t count = 0;
+    for (size_t i = 0; i < (size_t)r->cell_columns * r->cell_rows; ++i)
+        count += sf_count_bits((uint32_t)r->active[i]) + sf_count_bits((uint32_t)(r->active[i] >> 32));
+    return count;
+}
+
+static void run_rounds(render *r) {
+    sf_film_summary *summary = &r->film->summary;
+    uint64_t region = count_active(r), active = region;
+    summary->tolerance = -1;
+    while (active > 0) {
+        r->from = r->to;
+        r->to = next_target(r, r->from);
+        sf_pool_run(r->pool, r->tile_count, sample_tile, wake, r);
+        fix_tolerance(r);
+        sf_pool_run(r->pool, r->tile_count, decide_tile, wake, r);
+        active = count_active(r);
+        ++summary->rounds;
+        r->progress.round = summary->rounds;
+        r->progress.pixels_done = (region - active) * r->progress.pixels / region;
+        report(r, true);
+        /* A stop asked for between rounds: the pixels still active have only to be told. */
+        if (active > 0 && sf_atomic_load(&r->state) != RUNNING) {
+            sf_pool_run(r->pool, r->tile_count, decide_tile, wake, r);
+            active = 0;
+        }
+    }
+    if (summary->tolerance < 0) summary->tolerance = 0;
+}
+
+static sf_status lay_out_cells(render *r, sf_error *error) {
+    const sf_film *film = r->film;
+    r->cell_columns = (film->width + SF_CELL_SIZE - 1) / SF_CELL_SIZE;
+    r->cell_rows = (film->height + SF_CELL_SIZE - 1) / SF_CELL_SIZE;
+    r->tile_cells = r->options.tile_size / SF_CELL_SIZE;
+    uint32_t x0 = film->x0 / SF_CELL_SIZE, y0 = film->y0 / SF_CELL_SIZE;
+    r->tile_x0 = x0 / r->tile_cells * r->tile_cells;
+    r->tile_y0 = y0 / r->tile_cells * r->tile_cells;
+    r->tile_columns = (x0 + r->cell_columns - r->tile_x0 + r->tile_cells - 1) / r->tile_cells;
+    r->tile_rows = (y0 + r->cell_rows - r->tile_y0 + r->tile_cells - 1) / r->tile_cells;
+    size_t cells = (size_t)r->cell_columns * r->cell_rows, tiles = (size_t)r->tile_columns * r->tile_rows;
+    r->active = calloc(cells, sizeof *r->active);
+    r->tiles = malloc(tiles * sizeof *r->tiles);
+    if (!r->active || !r->tiles) return sf_fail_memory(error, "the lists of cells and tiles", cells * 8 + tiles * 4);
+    for (uint32_t y = 0; y < film->height; ++y)
+        for (uint32_t x = 0; x < film->width; ++x) {
+            uint32_t m = 0;
+            for (uint32_t bit = 0; bit < 3; ++bit) m |= (x >> bit & 1u) << 2 * bit | (y >> bit & 1u) << (2 * bit + 1);
+            r->active[(size_t)(y / SF_CELL_SIZE) * r->cell_columns + x / SF_CELL_SIZE] |= UINT64_C(1) << m;
+        }
+    list_tiles(r);
+    return SF_STATUS_OK;
+}
+
+static sf_status hire_workers(render *r, sf_error *error) {
+    size_t bytes = r->options.threads * sizeof *r->workers;
+    r->workers = sf_aligned_alloc(bytes);
+    if (!r->workers) return sf_fail_memory(error, "the threads' batches", bytes);
+    memset(r->workers, 0, bytes);
+    for (uint32_t i = 0; i < r->options.threads; ++i) {
+        uint64_t stream = r->options.seeds == SF_SEEDS_THREAD ? i : 0;
+        sf_status status = sf_rng_init(&r->workers[i].stream, SF_RNG_XOSHIRO256PP, r->options.seed, stream, error);
+        if (status) return status;
+    }
+    return sf_pool_create(r->options.threads, &r->pool, error);
+}
+
+static sf_status prepare(render *r, sf_error *error) {
+    const sf_scene *scene = r->context.scene;
+    const sf_render_options *o = &r->options;
+    sf_status status = sf_coordinates_init(&r->context.coordinates, o->pattern, &scene->plan, o->spp, o->seed, error);
+    if (!status) status = sf_film_create(o, &r->film, error);
+    if (!status) status = lay_out_cells(r, error);
+    if (!status) status = hire_workers(r, error);
+    if (status) return status;
+    r->context.camera = frame_camera(&scene->camera, o->width, o->height);
+    r->context.filter = o->pixel_filter;
+    r->context.seeds = o->seeds;
+    r->context.isa = sf_isa_active();
+    r->z = sf_normal_factor(o->confidence);
+    r->deadline = o->seconds > 0 ? r->start + o->seconds : 0;
+    r->progress.pixels = (uint64_t)r->film->crop_width * r->film->crop_height;
+    r->progress.expected_samples = (uint64_t)o->spp * r->film->width * r->film->height;
+    r->progress.time_limit = o->seconds;
+    return SF_STATUS_OK;
+}
+
+static void finish(render *r) {
+    sf_film_summary *summary = &r->film->summary;
+    for (uint32_t i = 0; i < r->options.threads; ++i) summary->traced_samples += sf_atomic_load(&r->workers[i].samples);
+    summary->confidence = r->options.confidence;
+    summary->threads = r->options.threads;
+    if (r->to < r->options.min_spp) summary->level = measure_level(r->film);
+    sf_film_resolve(r->film);
+    summary->seconds = sf_seconds_now() - r->start;
+}
+
+sf_status sf_render(const sf_scene *scene, const sf_render_options *options, sf_film **film, sf_error *error) {
+    *film = NULL;
+    sf_plan plan;
+    sf_status status = sf_scene_get_plan(scene, &plan, error); /* refuses a scene that is not committed */
+    if (status) return status;
+    render *r = calloc(1, sizeof *r);
+    if (!r) return sf_fail_memory(error, "a render", sizeof *r);
+    r->start = sf_seconds_now();
+    r->context.scene = scene;
+    r->options = *options;
+    status = sf_render_options_complete(&r->options, error);
+    if (!status) status = prepare(r, error);
+    if (!status) {
+        run_rounds(r);
+        finish(r);
+        status = sf_film_describe(r->film, scene, &r->options, r->context.isa, error);
+    }
+    sf_pool_destroy(r->pool);
+    sf_aligned_free(r->workers);
+    free(r->active);
+    free(r->tiles);
+    if (status)
+        sf_film_destroy(r->film);
+    else
+        *film = r->film;
+    free(r);
+    return status;
+}

@@ -1,0 +1,368 @@
+# SPDX-FileCopyrightText: 2026 The Sunfleck developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""render: the same bits however the work is divided, budgets, progress, Ctrl-C, bad input."""
+
+import gc
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+from typing import Any
+
+import numpy as np
+import pytest
+
+import sunfleck as sf
+
+MET, MAX_SAMPLES = sf.STOP_REASONS.index("met"), sf.STOP_REASONS.index("max samples")
+OUT_OF_TIME, INTERRUPTED = sf.STOP_REASONS.index("out of time"), sf.STOP_REASONS.index("interrupted")
+
+
+def assert_same_film(a: sf.Image, b: sf.Image) -> None:
+    for (name, ours), (_, theirs) in zip(a.channels, b.channels, strict=True):
+        assert np.array_equal(ours, theirs), name
+
+
+# ---- what an image holds ----
+
+
+def test_arrays_have_the_stated_shapes_and_dtypes(picture: sf.Image) -> None:
+    assert (picture.width, picture.height) == (40, 24)
+    assert (picture.color.shape, picture.color.dtype) == ((24, 40, 3), np.float32)
+    for array, dtype in (
+        (picture.alpha, np.float32),
+        (picture.samples, np.uint32),
+        (picture.half_width, np.float32),
+        (picture.stop_reason, np.uint8),
+    ):
+        assert (array.shape, array.dtype) == ((24, 40), dtype)
+    assert [name for name, _ in picture.channels] == ["R", "G", "B", "A", "samples", "half_width", "stop_reason"]
+
+
+def test_arrays_are_views_of_the_film(picture: sf.Image) -> None:
+    channels = dict(picture.channels)
+    for index, name in enumerate("RGB"):
+        assert np.shares_memory(channels[name], picture.color)
+        assert np.array_equal(channels[name], picture.color[..., index])
+    assert np.shares_memory(channels["samples"], picture.samples)
+    assert not picture.color.flags.owndata
+    assert not picture.color.flags.writeable
+
+
+def test_arrays_outlive_their_image(penumbra: sf.Scene) -> None:
+    image = sf.render(penumbra, 64, 64, spp=4)
+    kept, copy = image.color, image.color.copy()
+    del image
+    gc.collect()
+    others = [sf.render(penumbra, 64, 64, spp=4, seed=seed) for seed in range(1, 5)]
+    assert np.array_equal(kept, copy)
+    assert not any(np.shares_memory(kept, other.color) for other in others)
+
+
+def test_metadata_holds_every_option(picture: sf.Image) -> None:
+    options = {
+        "width": "40",
+        "height": "24",
+        "seed": "7",
+        "pattern": "sobol",
+        "pixel_filter": "box",
+        "stop": "standard-error",
+        "seeds": "pixel",
+        "tile_size": "16",
+    }
+    assert options.items() <= picture.metadata.items()
+    assert float(picture.metadata["relative_tolerance"]) == 0.05
+    assert float(picture.metadata["confidence"]) == 0.95
+    assert all(isinstance(text, str) for text in picture.metadata.values())
+
+
+def test_summary_adds_up(picture: sf.Image) -> None:
+    summary = picture.summary()
+    assert summary.pixels == 40 * 24
+    assert summary.samples == picture.samples.sum()
+    assert sum(summary.reasons.values()) == summary.pixels
+    assert summary.reasons["met"] == (picture.stop_reason == MET).sum()
+    assert summary.share_met == summary.reasons["met"] / summary.pixels
+    assert summary.worst_half_width == picture.half_width.max()
+    x, y = summary.worst_pixel
+    assert picture.half_width[y, x] == picture.half_width.max()
+    assert summary.mean_half_width == pytest.approx(picture.half_width.mean(), rel=1e-5)
+    assert summary.tolerance == pytest.approx(0.05 * summary.level)
+    assert summary.nonfinite_samples == 0
+    assert "met it" in str(summary)
+    assert f"{summary.samples}" in str(summary)
+
+
+# ---- accuracy and budgets ----
+
+
+def test_an_adaptive_picture_meets_its_tolerance(penumbra: sf.Scene) -> None:
+    image = sf.render(penumbra, 64, 64, tolerance=sf.Tolerance(absolute=0.02), min_spp=16)
+    met = image.stop_reason == MET
+    assert met.mean() > 0.95
+    assert image.half_width[met].max() <= 0.02
+    assert image.samples.min() == 16
+    assert image.samples.max() > 64
+
+
+def test_nothing_given_means_a_hundredth_of_the_level(penumbra: sf.Scene) -> None:
+    summary = sf.render(penumbra, 16, 16).summary()
+    assert summary.tolerance == pytest.approx(0.01 * summary.level)
+
+
+def test_a_plain_number_is_relative(penumbra: sf.Scene) -> None:
+    assert_same_film(
+        sf.render(penumbra, 24, 24, tolerance=0.03),
+        sf.render(penumbra, 24, 24, tolerance=sf.Tolerance(relative=0.03)),
+    )
+
+
+def test_a_fixed_count_is_taken_in_every_pixel(penumbra: sf.Scene) -> None:
+    image = sf.render(penumbra, 20, 20, spp=37)
+    assert (image.samples == 37).all()
+    assert (image.stop_reason == sf.STOP_REASONS.index("fixed")).all()
+
+
+def test_max_spp_ends_what_cannot_be_met(penumbra: sf.Scene) -> None:
+    image = sf.render(penumbra, 20, 20, tolerance=1e-9, min_spp=8, max_spp=64)
+    assert image.samples.max() == 64
+    assert (image.stop_reason == MAX_SAMPLES).any()
+
+
+def test_seconds_alone_are_spent(penumbra: sf.Scene) -> None:
+    start = time.monotonic()
+    image = sf.render(penumbra, 64, 64, seconds=0.5)
+    took = time.monotonic() - start
+    assert 0.4 < took < 1.0
+    assert (image.stop_reason == OUT_OF_TIME).all()
+    assert image.samples.min() > 0
+
+
+@pytest.mark.parametrize("scene", ["penumbra", "cornell"])
+def test_threads_and_tiles_change_no_bit(scene: str, request: pytest.FixtureRequest) -> None:
+    built = request.getfixturevalue(scene)
+    first = sf.render(built, 70, 50, tolerance=0.05, max_spp=256, threads=1, tile_size=8)
+    for threads, tile_size in ((2, 8), (1, 16), (2, 16), (2, 64), (3, 64)):
+        assert_same_film(
+            first, sf.render(built, 70, 50, tolerance=0.05, max_spp=256, threads=threads, tile_size=tile_size)
+        )
+
+
+@pytest.mark.parametrize("pattern", ["random", "halton", "sobol", "uniform", "jittered"])
+def test_every_pattern_gives_the_same_picture_twice(penumbra: sf.Scene, pattern: str) -> None:
+    image = sf.render(penumbra, 32, 32, spp=16, pattern=pattern)
+    assert_same_film(image, sf.render(penumbra, 32, 32, spp=16, pattern=pattern, threads=1))
+    # All of them estimate the same means; 16 samples of 1,024 pixels are within 2 %.
+    reference = sf.render(penumbra, 32, 32, spp=1024).color.mean()
+    assert image.color.mean() == pytest.approx(reference, rel=0.02)
+
+
+@pytest.mark.parametrize("pixel_filter", ["tent", "gaussian"])
+def test_filters_keep_the_mean_and_soften_edges(penumbra: sf.Scene, pixel_filter: str) -> None:
+    box = sf.render(penumbra, 64, 64, spp=256)
+    soft = sf.render(penumbra, 64, 64, spp=256, pixel_filter=pixel_filter)
+    assert soft.color.mean() == pytest.approx(box.color.mean(), rel=5e-3)
+    assert np.abs(np.diff(soft.color, axis=1)).max() < np.abs(np.diff(box.color, axis=1)).max()
+
+
+def test_seeds_differ(penumbra: sf.Scene) -> None:
+    a, b = (sf.render(penumbra, 32, 32, spp=16, seed=seed) for seed in (0, 2**64 - 1))
+    assert not np.array_equal(a.color, b.color)
+
+
+@pytest.mark.parametrize("seeds", ["thread", "shared"])
+def test_the_other_seed_policies_render(penumbra: sf.Scene, seeds: str) -> None:
+    image = sf.render(penumbra, 32, 32, spp=64, seeds=seeds, pattern="random")
+    assert image.color.mean() == pytest.approx(sf.render(penumbra, 32, 32, spp=64).color.mean(), rel=0.03)
+
+
+@pytest.mark.parametrize("crop", [(0, 0, 13, 7), (17, 5, 41, 30), (63, 47, 64, 48)])
+def test_a_crop_is_cut_out_of_the_full_frame(cornell: sf.Scene, crop: tuple[int, int, int, int]) -> None:
+    x0, y0, x1, y1 = crop
+    full = sf.render(cornell, 64, 48, spp=8)
+    image = sf.render(cornell, 64, 48, spp=8, crop=crop)
+    assert (image.width, image.height) == (x1 - x0, y1 - y0)
+    for (_, part), (_, whole) in zip(image.channels, full.channels, strict=True):
+        assert np.array_equal(part, whole[y0:y1, x0:x1])
+
+
+def test_renders_of_several_threads_do_not_disturb_one_another(penumbra: sf.Scene) -> None:
+    images: dict[int, sf.Image] = {}
+
+    def work(seed: int) -> None:
+        images[seed] = sf.render(penumbra, 48, 48, spp=32, seed=seed, threads=1)
+
+    threads = [threading.Thread(target=work, args=(seed,)) for seed in range(3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for seed, image in images.items():
+        assert_same_film(image, sf.render(penumbra, 48, 48, spp=32, seed=seed))
+
+
+def test_the_gil_is_released(penumbra: sf.Scene) -> None:
+    ticks = 0
+    done = threading.Event()
+
+    def tick() -> None:
+        nonlocal ticks
+        while not done.wait(0.005):
+            ticks += 1
+
+    ticker = threading.Thread(target=tick)
+    ticker.start()
+    sf.render(penumbra, 64, 64, seconds=0.5, threads=1)
+    done.set()
+    ticker.join()
+    assert ticks > 20
+
+
+# ---- progress ----
+
+
+def test_progress_is_told_after_every_round(penumbra: sf.Scene) -> None:
+    records: list[tuple[int, int, int, int]] = []
+
+    def tell(p: sf.Progress) -> None:
+        records.append((p.round, p.samples, p.pixels, p.pixels_done))
+
+    image = sf.render(penumbra, 32, 32, tolerance=0.02, progress=tell)
+    rounds, samples, pixels, done = zip(*records, strict=True)
+    assert list(rounds) == list(range(1, len(rounds) + 1))
+    assert len(rounds) == image.summary().rounds
+    assert list(samples) == sorted(samples)
+    assert list(done) == sorted(done)
+    assert set(pixels) == {32 * 32}
+    assert samples[-1] == image.samples.sum()
+    assert done[-1] == 32 * 32
+
+
+def test_progress_may_stop_the_render(penumbra: sf.Scene) -> None:
+    image = sf.render(penumbra, 64, 64, tolerance=1e-6, max_spp=2**20, progress=lambda p: p.round < 2)
+    assert image.interrupted
+    assert (image.stop_reason == INTERRUPTED).any()
+    assert image.summary().rounds == 2
+    assert image.samples.min() > 0
+
+
+def test_only_false_stops(penumbra: sf.Scene) -> None:
+    for answer in (None, 0, True):
+        assert not sf.render(penumbra, 16, 16, spp=64, progress=lambda _, a=answer: a).interrupted
+
+
+def test_what_progress_raises_comes_through(penumbra: sf.Scene) -> None:
+    def fail(_: sf.Progress) -> None:
+        raise LookupError("enough")
+
+    with pytest.raises(LookupError, match="enough"):
+        sf.render(penumbra, 64, 64, tolerance=1e-6, progress=fail)
+
+
+def test_a_bar_is_drawn_on_stderr(penumbra: sf.Scene, capfd: pytest.CaptureFixture[str]) -> None:
+    sf.render(penumbra, 32, 32, tolerance=0.02, progress=True)
+    sf.render(penumbra, 32, 32, spp=64, progress=True)
+    out, err = capfd.readouterr()
+    assert out == ""
+    assert "samples a pixel" in err
+    assert "sample/s" in err
+
+
+# ---- Ctrl-C ----
+
+INTERRUPT = """
+    import os, signal, threading, time
+    import sunfleck as sf
+    scene = sf.scenes.cornell()
+    sent = []
+
+    def interrupt():
+        sent.append(time.monotonic())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    threading.Timer(0.5, interrupt).start()
+    image = sf.render(scene, {size}, {size}, {options})
+    late = time.monotonic() - sent[0]
+    interrupted = sf.STOP_REASONS.index("interrupted")
+    assert image.interrupted
+    assert (image.stop_reason == interrupted).any()
+    assert image.color.shape == ({size}, {size}, 3)
+    assert late < 0.5, late
+    time.sleep(0.01)  # the KeyboardInterrupt was spent
+    print("partial")
+"""
+
+
+@pytest.mark.parametrize(
+    ("size", "options"),
+    [(64, "spp=2**31"), (2048, "spp=2**20, tile_size=1024"), (256, "tolerance=1e-9, max_spp=2**31")],
+)
+def test_ctrl_c_returns_the_partial_picture_within_half_a_second(size: int, options: str) -> None:
+    script = textwrap.dedent(INTERRUPT.format(size=size, options=options))
+    result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=False)
+    assert (result.returncode, result.stdout) == (0, "partial\n"), result.stderr
+
+
+# ---- bad input ----
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "match"),
+    [
+        ({"width": 0}, ValueError, "width is 0"),
+        ({"width": -1}, ValueError, "width is -1"),
+        ({"height": 65537}, ValueError, "height is 65537.*65536"),
+        ({"height": 2**40}, ValueError, "height"),
+        ({"width": 16.0}, TypeError, "width is 16.0"),
+        ({"spp": 0}, ValueError, "spp is 0"),
+        ({"spp": -4}, ValueError, "spp is -4"),
+        ({"spp": 2**31 + 1}, ValueError, "spp is 2147483649"),
+        ({"spp": 4, "tolerance": 0.1}, ValueError, "both"),
+        ({"tolerance": 0}, ValueError, "tolerance is 0"),
+        ({"tolerance": -0.1}, ValueError, "-0.1"),
+        ({"tolerance": np.nan}, ValueError, "tolerance"),
+        ({"tolerance": np.inf}, ValueError, "tolerance"),
+        ({"tolerance": "fine"}, TypeError, "tolerance"),
+        ({"confidence": 0}, ValueError, "confidence is 0"),
+        ({"confidence": 1}, ValueError, "confidence is 1"),
+        ({"confidence": np.nan}, ValueError, "confidence"),
+        ({"min_spp": 1}, ValueError, "min_spp is 1"),
+        ({"min_spp": 64, "max_spp": 32}, ValueError, "min_spp is 64"),
+        ({"max_spp": 2**31 + 1}, ValueError, "max_spp"),
+        ({"seconds": 0}, ValueError, "seconds is 0"),
+        ({"seconds": -1}, ValueError, "seconds is -1"),
+        ({"seconds": np.nan}, ValueError, "seconds"),
+        ({"pattern": "sobel"}, ValueError, "sobel.*sobol"),
+        ({"pattern": None}, TypeError, "pattern"),
+        ({"pixel_filter": "lanczos"}, ValueError, "lanczos.*box, tent, gaussian"),
+        ({"stop": "never"}, ValueError, "never.*standard-error"),
+        ({"seeds": "time"}, ValueError, "time.*pixel, thread, shared"),
+        ({"seed": -1}, ValueError, "seed is -1"),
+        ({"seed": 2**64}, ValueError, "seed"),
+        ({"threads": 0}, ValueError, "threads is 0"),
+        ({"threads": 1025}, ValueError, "threads is 1025"),
+        ({"tile_size": 12}, ValueError, "tile_size is 12"),
+        ({"tile_size": 0}, ValueError, "tile_size is 0"),
+        ({"tile_size": 2048}, ValueError, "tile_size is 2048"),
+        ({"crop": (0, 0, 0, 0)}, ValueError, "crop"),
+        ({"crop": (4, 4, 4, 8)}, ValueError, "crop"),
+        ({"crop": (8, 0, 4, 8)}, ValueError, "crop"),
+        ({"crop": (0, 0, 17, 8)}, ValueError, "crop"),
+        ({"crop": (0, 0, 8)}, ValueError, "crop"),
+        ({"crop": (-1, 0, 8, 8)}, ValueError, "crop x0 is -1"),
+        ({"crop": 5}, ValueError, "crop"),
+        ({"progress": 3}, TypeError, "progress"),
+        ({"scene": None}, TypeError, "scene"),
+    ],
+)
+def test_a_bad_option_is_named(penumbra: sf.Scene, options: dict[str, Any], error: Any, match: str) -> None:
+    with pytest.raises(error, match=match):
+        sf.render(**{"scene": penumbra, "width": 16, "height": 16, **options})
+
+
+@pytest.mark.parametrize("values", [{}, {"absolute": 0}, {"relative": "x"}])
+def test_a_bad_tolerance_is_named(values: dict[str, Any]) -> None:
+    with pytest.raises((ValueError, TypeError), match="tolerance"):
+        sf.Tolerance(**values)
