@@ -34,8 +34,8 @@ static void sobol_block(const uint32_t table[4][256], uint32_t high, const uint3
     uint32_t start = table[0][high & 0xf0u] ^ table[1][high >> 8 & 255u] ^ table[2][high >> 16 & 255u] ^ table[3][high >> 24];
     uint32_t column0 = table[0][1], column1 = table[0][2], column2 = table[0][4], column3 = table[0][8];
     for (int l = 0; l < SF_LANES; ++l) {
-        uint32_t x = start ^ (0u - (low[l] & 1u) & column0) ^ (0u - (low[l] >> 1 & 1u) & column1) ^
-                     (0u - (low[l] >> 2 & 1u) & column2) ^ (0u - (low[l] >> 3) & column3);
+        uint32_t x = start ^ ((0u - (low[l] & 1u)) & column0) ^ ((0u - (low[l] >> 1 & 1u)) & column1) ^
+                     ((0u - (low[l] >> 2 & 1u)) & column2) ^ ((0u - (low[l] >> 3)) & column3);
         out[l] = sf_owen_float(x, seed);
     }
 }

@@ -44,6 +44,7 @@ typedef struct render {
     uint32_t *tiles;           /* those with active pixels */
     size_t tile_count;
     uint32_t from, to; /* the round's sample counts */
+    bool level_fixed;
     double z;          /* standard errors in a half-width */
     double start, deadline;
     sf_progress progress;
@@ -150,17 +151,31 @@ static void sample_cell(render *r, render_worker *worker, uint32_t cell) {
     flush_batch(r, worker);
 }
 
-/* Calls `visit` for every cell of the tile that has active pixels. */
-static void for_each_cell(render *r, unsigned worker, size_t item, void (*visit)(render *, render_worker *, uint32_t)) {
-    uint32_t tile = r->tiles[item], x0 = r->film->x0 / SF_CELL_SIZE, y0 = r->film->y0 / SF_CELL_SIZE;
+/* The cells of a tile that are in the film: columns x0 .. x1 - 1, rows y0 .. y1 - 1 of it. */
+typedef struct cell_range {
+    uint32_t x0, y0, x1, y1;
+} cell_range;
+
+static uint32_t clamp_below(uint32_t value, uint32_t offset) { return value > offset ? value - offset : 0; }
+static uint32_t at_most(uint32_t value, uint32_t limit) { return value < limit ? value : limit; }
+
+static cell_range tile_range(const render *r, uint32_t tile) {
+    uint32_t x0 = r->film->x0 / SF_CELL_SIZE, y0 = r->film->y0 / SF_CELL_SIZE;
     uint32_t left = r->tile_x0 + tile % r->tile_columns * r->tile_cells;
     uint32_t top = r->tile_y0 + tile / r->tile_columns * r->tile_cells;
-    for (uint32_t y = top; y < top + r->tile_cells; ++y)
-        for (uint32_t x = left; x < left + r->tile_cells; ++x) {
-            if (x < x0 || y < y0 || x - x0 >= r->cell_columns || y - y0 >= r->cell_rows) continue;
-            uint32_t cell = (y - y0) * r->cell_columns + (x - x0);
-            if (r->active[cell]) visit(r, r->workers + worker, cell);
-        }
+    return (cell_range){.x0 = clamp_below(left, x0),
+                        .y0 = clamp_below(top, y0),
+                        .x1 = at_most(left + r->tile_cells - x0, r->cell_columns),
+                        .y1 = at_most(top + r->tile_cells - y0, r->cell_rows)};
+}
+
+/* Calls `visit` for every cell of the tile that has active pixels. */
+static void for_each_cell(render *r, unsigned worker, size_t item, void (*visit)(render *, render_worker *, uint32_t)) {
+    cell_range range = tile_range(r, r->tiles[item]);
+    for (uint32_t y = range.y0; y < range.y1; ++y)
+        for (uint32_t x = range.x0; x < range.x1; ++x)
+            if (r->active[(size_t)y * r->cell_columns + x])
+                visit(r, r->workers + worker, y * r->cell_columns + x);
 }
 
 static void sample_tile(void *user, unsigned worker, size_t item) {
@@ -214,7 +229,8 @@ static double measure_level(const sf_film *film) {
 static void fix_tolerance(render *r) {
     const sf_render_options *o = &r->options;
     sf_film_summary *summary = &r->film->summary;
-    if (r->to < o->min_spp || summary->rounds > 0) return;
+    if (r->to < o->min_spp || r->level_fixed) return;
+    r->level_fixed = true;
     summary->level = measure_level(r->film);
     if (o->relative_tolerance > 0 || o->absolute_tolerance > 0)
         summary->tolerance = fmax(o->absolute_tolerance, o->relative_tolerance * summary->level);
@@ -248,9 +264,18 @@ static void report(render *r, bool round_finished) {
 
 static void wake(void *user) { report(user, false); }
 
+static bool tile_is_active(const render *r, uint32_t tile) {
+    cell_range range = tile_range(r, tile);
+    for (uint32_t y = range.y0; y < range.y1; ++y)
+        for (uint32_t x = range.x0; x < range.x1; ++x)
+            if (r->active[(size_t)y * r->cell_columns + x]) return true;
+    return false;
+}
+
 static void list_tiles(render *r) {
     r->tile_count = 0;
-    for (uint32_t tile = 0; tile < r->tile_columns * r->tile_rows; ++tile) r->tiles[r->tile_count++] = tile;
+    for (uint32_t tile = 0; tile < r->tile_columns * r->tile_rows; ++tile)
+        if (tile_is_active(r, tile)) r->tiles[r->tile_count++] = tile;
 }
 
 static uint64_t count_active(const render *r) {
@@ -270,6 +295,7 @@ static void run_rounds(render *r) {
         sf_pool_run(r->pool, r->tile_count, sample_tile, wake, r);
         fix_tolerance(r);
         sf_pool_run(r->pool, r->tile_count, decide_tile, wake, r);
+        list_tiles(r);
         active = count_active(r);
         ++summary->rounds;
         r->progress.round = summary->rounds;
@@ -346,7 +372,7 @@ static void finish(render *r) {
     for (uint32_t i = 0; i < r->options.threads; ++i) summary->traced_samples += sf_atomic_load(&r->workers[i].samples);
     summary->confidence = r->options.confidence;
     summary->threads = r->options.threads;
-    if (r->to < r->options.min_spp) summary->level = measure_level(r->film);
+    if (!r->level_fixed) summary->level = measure_level(r->film);
     sf_film_resolve(r->film);
     summary->seconds = sf_seconds_now() - r->start;
 }
