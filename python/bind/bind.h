@@ -80,7 +80,7 @@ struct shared {
 // Names and descriptions, listed until C has no further name.
 template <class Enum>
 nb::typed<nb::dict, nb::str, nb::str> listed(const char *(*name)(Enum), const char *(*description)(Enum)) {
-    auto all = nb::borrow<nb::typed<nb::dict, nb::str, nb::str>>(nb::dict());
+    nb::dict all;
     for (int k = 0; name(static_cast<Enum>(k)); ++k)
         all[name(static_cast<Enum>(k))] = description(static_cast<Enum>(k));
     return all;

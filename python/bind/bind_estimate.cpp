@@ -69,7 +69,7 @@ void bind_estimate(nb::module_ &m) {
             },
             "confidence"_a)
         .def("state",
-             [](moments &self) {
+             [](moments &self) -> nb::typed<nb::tuple, uint64_t, double, double, uint64_t> {
                  sf_moments now = self.copy();
                  return nb::make_tuple(now.count, now.mean, now.m2, now.nonfinite);
              })
@@ -97,7 +97,7 @@ void bind_estimate(nb::module_ &m) {
         .def_prop_ro("sample_deviation", &value_of<sf_vector_moments, sf_vector_moments_sample_deviation>)
         .def_prop_ro("standard_error", &value_of<sf_vector_moments, sf_vector_moments_standard_error>)
         .def("state",
-             [](vector_moments &self) {
+             [](vector_moments &self) -> nb::typed<nb::tuple, uint64_t, vector3, double, uint64_t> {
                  sf_vector_moments now = self.copy();
                  return nb::make_tuple(now.count, vector3{now.mean[0], now.mean[1], now.mean[2]}, now.m2,
                                        now.nonfinite);

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
+#include <optional>
 #include <string>
 
 #include "bind.h"
@@ -18,7 +20,9 @@ sf_mapping find(const std::string &name) {
 }
 
 // Input and output widths, and for each parameter its name, components, default and range.
-nb::tuple signature_of(const std::string &name) {
+nb::typed<nb::tuple, size_t, size_t,
+          nb::typed<nb::list, nb::typed<nb::tuple, nb::str, size_t, std::optional<double>, nb::str>>>
+signature_of(const std::string &name) {
     sf_mapping mapping = find(name);
     nb::list parameters;
     for (size_t i = 0; i < sf_mapping_parameter_count(mapping); ++i) {
@@ -47,8 +51,8 @@ fill_function<double> function_of(const std::string &operation) {
 
 // A parameter is None (its default), one value, or one value for each point.
 template <class T>
-void fill(const std::string &operation, const std::string &name, flat_array<const T> input, nb::list parameters,
-          flat_array<T> out) {
+void fill(const std::string &operation, const std::string &name, flat_array<const T> input,
+          nb::typed<nb::list, nb::any> parameters, flat_array<T> out) {
     sf_mapping mapping = find(name);
     size_t width = operation == "sample" ? sf_mapping_input_width(mapping) : sf_mapping_output_width(mapping);
     size_t count = input.size() / width;

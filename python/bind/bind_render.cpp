@@ -44,7 +44,7 @@ nb::object view_channel(nb::handle owner, const sf_film *film, const sf_channel 
     return view<float>(owner, film, channel, 0);
 }
 
-nb::list channels_of(nb::handle_t<film_handle> self) {
+nb::typed<nb::list, nb::typed<nb::tuple, nb::str, nb::any>> channels_of(nb::handle_t<film_handle> self) {
     const sf_film *film = nb::cast<film_handle &>(self).film;
     nb::list channels;
     for (size_t i = 0; i < sf_film_channel_count(film); ++i) {
@@ -55,12 +55,12 @@ nb::list channels_of(nb::handle_t<film_handle> self) {
 }
 
 // R, G and B interleave, so that the first channel's address and strides show all three.
-nb::object color_of(nb::handle_t<film_handle> self) {
+nb::typed<nb::object, nb::ndarray<nb::numpy, const float, nb::ndim<3>>> color_of(nb::handle_t<film_handle> self) {
     const sf_film *film = nb::cast<film_handle &>(self).film;
     return view<float>(self, film, sf_film_channel(film, 0), 3);
 }
 
-nb::dict attributes_of(const film_handle &self) {
+nb::typed<nb::dict, nb::str, nb::str> attributes_of(const film_handle &self) {
     nb::dict attributes;
     for (size_t i = 0; i < sf_film_attribute_count(self.film); ++i) {
         sf_attribute attribute = sf_film_attribute(self.film, i);
@@ -69,7 +69,7 @@ nb::dict attributes_of(const film_handle &self) {
     return attributes;
 }
 
-nb::dict summary_of(const film_handle &self) {
+nb::typed<nb::dict, nb::str, nb::any> summary_of(const film_handle &self) {
     sf_film_summary s = sf_film_summarize(self.film);
     nb::dict reasons, d;
     for (int k = 0; k < SF_STOP_REASON_COUNT; ++k)
@@ -197,7 +197,7 @@ void bind_render(nb::module_ &m) {
         .def("summary", &summary_of);
 
     m.def("stop_reasons", [] {
-        nb::typed<nb::list, nb::str> names = nb::borrow<nb::typed<nb::list, nb::str>>(nb::list());
+        nb::typed<nb::list, nb::str> names;
         for (int k = 0; k < SF_STOP_REASON_COUNT; ++k)
             names.append(sf_stop_reason_name(static_cast<sf_stop_reason>(k)));
         return names;

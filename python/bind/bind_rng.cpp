@@ -71,7 +71,7 @@ void bind_rng(nb::module_ &m) {
                     sf_rng_spawn(rng, count, children.data());
                     return SF_STATUS_OK;
                 });
-                nb::typed<nb::list, generator> list = nb::borrow<nb::typed<nb::list, generator>>(nb::list());
+                nb::typed<nb::list, generator> list;
                 for (const sf_rng &child : children)
                     list.append(nb::cast(new generator(child), nb::rv_policy::take_ownership));
                 return list;

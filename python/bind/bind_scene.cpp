@@ -34,7 +34,7 @@ sf_camera make_camera(const vector3 &position, const vector3 &target, const vect
 
 nb::tuple to_tuple(const float *v) { return nb::make_tuple(v[0], v[1], v[2]); }
 
-nb::dict info_of(const scene_handle &scene) {
+nb::typed<nb::dict, nb::str, nb::any> info_of(const scene_handle &scene) {
     sf_scene_info info;
     call([&](sf_error *error) { return sf_scene_get_info(scene.scene, &info, error); });
     nb::dict d;
@@ -50,7 +50,7 @@ nb::dict info_of(const scene_handle &scene) {
     return d;
 }
 
-nb::dict plan_of(const scene_handle &scene) {
+nb::typed<nb::dict, nb::str, nb::any> plan_of(const scene_handle &scene) {
     sf_plan plan;
     call([&](sf_error *error) { return sf_scene_get_plan(scene.scene, &plan, error); });
     nb::list stages, dimensions;

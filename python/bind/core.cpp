@@ -5,35 +5,28 @@
 
 namespace {
 
-PyObject *backend_error;  // sunfleck.Error, for the life of the process
-
-PyObject *exception_of(sf_status status) {
+nb::object exception_of(sf_status status) {
     switch (status) {
-        case SF_STATUS_INVALID_VALUE: return PyExc_ValueError;
-        case SF_STATUS_OUT_OF_MEMORY: return PyExc_MemoryError;
-        case SF_STATUS_IO: return PyExc_OSError;
-        case SF_STATUS_UNSUPPORTED: return PyExc_NotImplementedError;
+        case SF_STATUS_INVALID_VALUE: return nb::borrow(PyExc_ValueError);
+        case SF_STATUS_OUT_OF_MEMORY: return nb::borrow(PyExc_MemoryError);
+        case SF_STATUS_IO: return nb::borrow(PyExc_OSError);
+        case SF_STATUS_UNSUPPORTED: return nb::borrow(PyExc_NotImplementedError);
         case SF_STATUS_OK:
         case SF_STATUS_BACKEND: break;
     }
-    return backend_error;
+    return nb::module_::import_("sunfleck.error").attr("Error");
 }
 
 }  // namespace
 
 void raise_unless_ok(sf_status status, const sf_error &error) {
     if (status == SF_STATUS_OK) return;
-    PyErr_SetString(exception_of(status), error.message[0] ? error.message : sf_status_name(status));
+    PyErr_SetString(exception_of(status).ptr(), error.message[0] ? error.message : sf_status_name(status));
     throw nb::python_error();
 }
 
 NB_MODULE(_core, m) {
     m.doc() = "The C library, as thin as it can be bound. Private: use the modules of sunfleck.";
-    backend_error = PyErr_NewExceptionWithDoc(
-        "sunfleck.Error", "What only the libraries underneath can tell: Embree reported an error of its own.",
-        PyExc_RuntimeError, nullptr);
-    if (!backend_error) throw nb::python_error();
-    m.attr("Error") = nb::borrow(backend_error);
     m.def("version", &sf_version);
     m.def("isa", [] { return sf_isa_name(sf_isa_active()); });
     bind_rng(m);

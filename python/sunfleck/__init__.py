@@ -16,8 +16,8 @@ Examples
 
 # What is heavy (OpenImageIO, trimesh, tqdm) is imported where it is used, not here.
 from sunfleck import mapping, scenes
-from sunfleck._core import Error
 from sunfleck._core import version as _version
+from sunfleck.error import Error
 from sunfleck.estimate import Moments, VectorMoments
 from sunfleck.load import load
 from sunfleck.mapping import MAPPINGS

@@ -177,7 +177,8 @@ class _File:
             rows = self._array(sparse["indices"], changed, sparse["indices"]["componentType"], 1)
             values[rows[:, 0]] = self._array(sparse["values"], changed, component, width)
         if accessor.get("normalized") and values.dtype.kind in "iu":
-            values = np.maximum(values / np.float32(np.iinfo(values.dtype).max), np.float32(-1))
+            scaled: NDArray[np.float32] = np.maximum(values / np.float32(np.iinfo(values.dtype).max), np.float32(-1))
+            return scaled
         return values
 
     # ---- meshes ----
@@ -188,20 +189,23 @@ class _File:
             self._note("points and lines are left out")
             return None
         if "indices" in primitive:
-            order = self._accessor(primitive["indices"])[:, 0]
+            order: NDArray[Any] = self._accessor(primitive["indices"])[:, 0]
             if order.dtype.kind != "u":
                 raise ValueError(f"vertex indices of type {order.dtype}; they must be unsigned integers")
         else:
             order = np.arange(vertex_count, dtype=np.uint32)
         if mode == _TRIANGLES:
-            return order[: len(order) // 3 * 3].reshape(-1, 3)
-        if mode == _STRIP:  # every second one is wound the other way
+            rows = np.arange(len(order) // 3 * 3).reshape(-1, 3)
+        elif mode == _STRIP:  # every second one is wound the other way
             i = np.arange(max(len(order) - 2, 0))
-            return order[np.stack([i, i + 1 + i % 2, i + 2 - i % 2], axis=1)]
-        if mode == _FAN:
+            rows = np.stack([i, i + 1 + i % 2, i + 2 - i % 2], axis=1)
+        elif mode == _FAN:
             i = np.arange(1, max(len(order) - 1, 1))
-            return order[np.stack([i, i + 1, np.zeros_like(i)], axis=1)]
-        raise ValueError(f"a primitive has mode {mode!r}; 0 to 6 exist")
+            rows = np.stack([i, i + 1, np.zeros_like(i)], axis=1)
+        else:
+            raise ValueError(f"a primitive has mode {mode!r}; 0 to 6 exist")
+        triangles: NDArray[Any] = order[rows]
+        return triangles
 
     def _material(self, primitive: dict[str, Any]) -> dict[str, Vector]:
         """Albedo and emission, where the file has them."""
@@ -241,7 +245,8 @@ class _File:
 
     def _transform(self, node: dict[str, Any]) -> NDArray[np.float64]:
         if "matrix" in node:
-            return np.array(node["matrix"], dtype=np.float64).reshape(4, 4).T
+            matrix: NDArray[np.float64] = np.array(node["matrix"], dtype=np.float64).reshape(4, 4).T
+            return matrix
         x, y, z, w = np.array(node.get("rotation", (0, 0, 0, 1)), dtype=np.float64)
         # Any quaternion but 0 is a rotation, once its length is divided out.
         s = 2 / (x * x + y * y + z * z + w * w)

@@ -107,7 +107,8 @@ def _read(path: Path) -> tuple[list[Mesh], View | None]:
 def _direction(value: Vector, z_up: bool) -> NDArray[np.float64]:
     x, y, z = value
     direction = np.array((x, -z, y) if z_up else value, dtype=np.float64)
-    return direction / np.linalg.norm(direction)
+    direction /= np.linalg.norm(direction)
+    return direction
 
 
 def _default_camera(centre: NDArray[np.float64], radius: float, z_up: bool) -> Camera:

@@ -63,32 +63,32 @@ class Rng:
     [16807, 282475249, 1622650073]
     """
 
-    __slots__ = ("_core",)
+    __slots__ = ("_generator",)
 
-    _core: _core.Rng
+    _generator: _core.Rng
 
     def __init__(self, name: str, seed: int | None = None, stream: int = 0) -> None:
         stream = integer("stream", stream)
         if seed is not None:
-            self._core = _core.Rng(text("name", name), integer("seed", seed), stream)
+            self._generator = _core.Rng(text("name", name), integer("seed", seed), stream)
             return
         mixed = secrets.randbits(64) ^ time.time_ns()
         try:
-            self._core = _core.Rng(text("name", name), mixed or 1, stream)
+            self._generator = _core.Rng(text("name", name), mixed or 1, stream)
         except ValueError:  # a method of 31 bits; or a bad name or stream, which this reports again
-            self._core = _core.Rng(name, 1 + mixed % (1 << 30), stream)
+            self._generator = _core.Rng(name, 1 + mixed % (1 << 30), stream)
 
     @property
     def name(self) -> str:
-        return self._core.name
+        return self._generator.name
 
     @property
     def seed(self) -> int:
-        return self._core.seed
+        return self._generator.seed
 
     @property
     def stream(self) -> int:
-        return self._core.stream
+        return self._generator.stream
 
     @overload
     def random(self, shape: None = None, dtype: DTypeLike = "float64", out: None = None) -> float: ...
@@ -124,7 +124,8 @@ class Rng:
         Releases the GIL while it fills.
         """
         kind = one_of("dtype", dtype, ("float64", "float32"))
-        return self._filled(shape, kind, out, float)
+        values = self._filled(shape, kind, out)
+        return float(values[()]) if shape is None and out is None else values
 
     @overload
     def bits(self, shape: None = None, dtype: DTypeLike = "uint32", out: None = None) -> int: ...
@@ -157,19 +158,19 @@ class Rng:
             Another dtype, a negative size, or an ``out`` that would need a copy.
         """
         kind = one_of("dtype", dtype, ("uint32", "uint64"))
-        return self._filled(shape, kind, out, int)
+        values = self._filled(shape, kind, out)
+        return int(values[()]) if shape is None and out is None else values
 
-    def _filled(self, shape: Shape | None, dtype: np.dtype[Any], out: NDArray[Any] | None, scalar: type) -> Any:
-        if shape is None and out is None:
-            return scalar(self._filled(1, dtype, None, scalar)[0])
-        wanted = out.shape if shape is None and isinstance(out, np.ndarray) else shape_of("shape", shape)
-        array = output_array(out, wanted, dtype)
-        self._core.fill(array)
+    def _filled(self, shape: Shape | None, dtype: np.dtype[Any], out: NDArray[Any] | None) -> NDArray[Any]:
+        if shape is None:
+            shape = out.shape if isinstance(out, np.ndarray) else ()
+        array = output_array(out, shape_of("shape", shape), dtype)
+        self._generator.fill(array)
         return array
 
     def reset(self) -> None:
         """Starts again, as the name, seed and stream first gave it."""
-        self._core.reset()
+        self._generator.reset()
 
     def skip(self, count: int) -> None:
         """Passes over ``count`` native draws at once, in O(log count).
@@ -193,7 +194,7 @@ class Rng:
         >>> a.bits() == b.bits()
         True
         """
-        self._core.skip(integer("count", count))
+        self._generator.skip(integer("count", count))
 
     def spawn(self, count: int) -> list[Rng]:
         """Independent generators of the same kind, for threads or tasks.
@@ -208,12 +209,12 @@ class Rng:
         >>> a.bits() == b.bits()
         False
         """
-        return [Rng._wrap(core) for core in self._core.spawn(integer("count", count, bits=31))]
+        return [Rng._wrap(core) for core in self._generator.spawn(integer("count", count, bits=31))]
 
     @property
     def state(self) -> dict[str, Any]:
         """The whole state: ``{"name": str, "words": list of ints}``, for `from_state`."""
-        return {"name": self._core.name, "words": self._core.state()}
+        return {"name": self._generator.name, "words": self._generator.state()}
 
     @classmethod
     def from_state(cls, state: Mapping[str, Any]) -> Rng:
@@ -242,7 +243,7 @@ class Rng:
     @classmethod
     def _wrap(cls, core: _core.Rng) -> Rng:
         rng = cls.__new__(cls)
-        rng._core = core
+        rng._generator = core
         return rng
 
     def __reduce__(self) -> tuple[Any, ...]:

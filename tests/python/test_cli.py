@@ -20,6 +20,12 @@ def run(*arguments: str | Path, cwd: Path | None = None) -> subprocess.Completed
     return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False, cwd=cwd)
 
 
+def pixels_of(path: Path) -> np.ndarray:
+    pixels = oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT)
+    assert pixels is not None
+    return pixels
+
+
 def assert_refused(result: subprocess.CompletedProcess[str], *words: str) -> None:
     assert result.returncode == 2
     assert result.stdout == ""
@@ -36,12 +42,12 @@ def test_render_is_the_library_s(tmp_path: Path) -> None:
     assert (result.returncode, result.stderr) == (0, "")
     assert "samples" in result.stdout
     expected = sf.render(sf.scenes.cornell(), 48, 32, spp=8, seed=3, pixel_filter="tent", crop=(8, 0, 40, 24))
-    pixels = oiio.ImageBuf(str(exr)).get_pixels(oiio.FLOAT)
+    pixels = pixels_of(exr)
     assert np.array_equal(pixels[..., :3], expected.color)
     assert png.stat().st_size > 100
     commas = run("render", "cornell", *options, "--crop", "8,0,40,24", "-o", tmp_path / "two.exr")
     assert commas.returncode == 0
-    assert np.array_equal(oiio.ImageBuf(str(tmp_path / "two.exr")).get_pixels(oiio.FLOAT), pixels)
+    assert np.array_equal(pixels_of(tmp_path / "two.exr"), pixels)
 
 
 def test_render_s_defaults(tmp_path: Path) -> None:
@@ -165,6 +171,6 @@ def test_ctrl_c_saves_the_partial_picture_and_exits_130(tmp_path: Path) -> None:
     result = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False, cwd=tmp_path)
     assert result.returncode == 130, result.stderr
     assert result.stderr == "sunfleck: interrupted; the partial picture was saved\n"
-    pixels = oiio.ImageBuf(str(tmp_path / "out.exr")).get_pixels(oiio.FLOAT)
+    pixels = pixels_of(tmp_path / "out.exr")
     assert pixels.shape == (64, 64, 7)
     assert pixels[..., :3].max() > 0

@@ -14,7 +14,7 @@ import pytest
 
 import sunfleck as sf
 
-POSITIONS = np.float32([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [2, 0, 0]])
+POSITIONS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [2, 0, 0]], dtype=np.float32)
 
 
 class Document:
@@ -77,7 +77,8 @@ def document() -> Document:
 
 def corners(scene: sf.Scene, mesh: int = 0) -> list[Any]:
     found = scene.meshes[mesh]
-    return found.vertices[found.triangles].tolist()
+    values: list[Any] = found.vertices[found.triangles].tolist()
+    return values
 
 
 # ---- accessors and primitives ----
@@ -118,15 +119,15 @@ def test_sparse_accessors(document: Document, tmp_path: Path, base: bool) -> Non
         del accessor["bufferView"]
     accessor["sparse"] = {
         "count": 2,
-        "indices": {"bufferView": document.view(np.uint16([1, 2]).tobytes()), "componentType": 5123},
-        "values": {"bufferView": document.view(np.float32([[5, 0, 0], [0, 6, 0]]).tobytes())},
+        "indices": {"bufferView": document.view(np.array([1, 2], dtype=np.uint16).tobytes()), "componentType": 5123},
+        "values": {"bufferView": document.view(np.array([[5, 0, 0], [0, 6, 0]], dtype=np.float32).tobytes())},
     }
     assert corners(document.load(tmp_path)) == [[[0, 0, 0], [5, 0, 0], [0, 6, 0]]]
 
 
 def test_quantized_positions(document: Document, tmp_path: Path) -> None:
     document.tree["extensionsRequired"] = ["KHR_mesh_quantization"]
-    quantized = np.int16([[0, 0, 0], [32767, 0, 0], [0, -32768, 0]])
+    quantized = np.array([[0, 0, 0], [32767, 0, 0], [0, -32768, 0]], dtype=np.int16)
     document.primitive["attributes"]["POSITION"] = document.accessor(quantized, normalized=True)
     assert corners(document.load(tmp_path)) == [[[0, 0, 0], [1, 0, 0], [0, -1, 0]]]
     document.tree["accessors"][-1]["normalized"] = False

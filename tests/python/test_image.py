@@ -22,6 +22,7 @@ def read(path: Path) -> tuple[oiio.ImageSpec, np.ndarray]:
     assert source, oiio.geterror()
     spec = source.spec()
     pixels = source.read_image(spec.format)
+    assert pixels is not None
     source.close()
     return spec, pixels
 

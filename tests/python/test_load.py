@@ -92,7 +92,7 @@ def test_ply_and_stl(tmp_path: Path, name: str, data: str | bytes) -> None:
 
 
 def test_a_file_without_camera_and_light_gets_stated_ones(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
-    corner = (np.float32([1e3, 2e3, 3e3])).tolist()
+    corner = (1e3, 2e3, 3e3)
     text = "".join(f"v {corner[0] + x} {corner[1] + y} {corner[2] + z}\n" for x, y, z in np.ndindex(2, 2, 2))
     with caplog.at_level(logging.INFO, logger="sunfleck"):
         scene = sf.load(write(tmp_path, "box.obj", text + "f 1 2 3\nf 6 7 8\n"))

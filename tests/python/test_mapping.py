@@ -80,7 +80,7 @@ def test_the_mean_of_one_over_pdf_is_the_measure(name: str, measure: float) -> N
 
 @pytest.mark.parametrize(("name", "mu"), [("pixel_tent", None), ("pixel_gaussian", 0.4), ("pixel_gaussian", 0.2)])
 def test_pixel_densities_integrate_to_one(name: str, mu: float | None) -> None:
-    named = {} if mu is None else {"mu": mu}
+    named: dict[str, Any] = {} if mu is None else {"mu": mu}
     axis = np.linspace(-3, 4, 1401)
     grid = np.stack(np.meshgrid(axis, axis), axis=-1)
     assert mapping(name).pdf(grid, **named).sum() * (axis[1] - axis[0]) ** 2 == pytest.approx(1, abs=1e-4)
@@ -120,7 +120,9 @@ def test_a_parameter_may_differ_from_point_to_point() -> None:
     assert together.shape == (2, 4, 3)
     for i in np.ndindex(2, 4):
         assert np.array_equal(together[i], sf.mapping.triangle.sample(u[i], a[i], b, c))
-    row = sf.mapping.pixel_gaussian.sample(u, np.float32([[0.1], [0.3]]))  # broadcast along the last axis
+    row = sf.mapping.pixel_gaussian.sample(
+        u, np.array([[0.1], [0.3]], dtype=np.float32)
+    )  # broadcast along the last axis
     assert np.array_equal(row[1], sf.mapping.pixel_gaussian.sample(u[1], 0.3))
 
 

@@ -30,14 +30,16 @@ def assert_same_film(a: sf.Image, b: sf.Image) -> None:
 
 def test_arrays_have_the_stated_shapes_and_dtypes(picture: sf.Image) -> None:
     assert (picture.width, picture.height) == (40, 24)
-    assert (picture.color.shape, picture.color.dtype) == ((24, 40, 3), np.float32)
+    assert picture.color.shape == (24, 40, 3)
+    assert picture.color.dtype == np.float32
     for array, dtype in (
         (picture.alpha, np.float32),
         (picture.samples, np.uint32),
         (picture.half_width, np.float32),
         (picture.stop_reason, np.uint8),
     ):
-        assert (array.shape, array.dtype) == ((24, 40), dtype)
+        assert array.shape == (24, 40)
+        assert array.dtype == dtype
     assert [name for name, _ in picture.channels] == ["R", "G", "B", "A", "samples", "half_width", "stop_reason"]
 
 
@@ -249,8 +251,9 @@ def test_progress_may_stop_the_render(penumbra: sf.Scene) -> None:
 
 
 def test_only_false_stops(penumbra: sf.Scene) -> None:
-    for answer in (None, 0, True):
-        assert not sf.render(penumbra, 16, 16, spp=64, progress=lambda _, a=answer: a).interrupted
+    answers: list[object] = [None, 0, True]
+    for answer in answers:
+        assert not sf.render(penumbra, 16, 16, spp=64, progress=lambda _, answer=answer: answer).interrupted  # type: ignore[misc]
 
 
 def test_what_progress_raises_comes_through(penumbra: sf.Scene) -> None:

@@ -22,7 +22,9 @@ def quad(**options: Any) -> sf.Mesh:
 
 def lamp(z: float = 2) -> sf.Mesh:
     """Faces down."""
-    return sf.Mesh(VERTICES + np.float32([0, 0, z]), TRIANGLES[:, ::-1], albedo=(0, 0, 0), emission=(1, 1, 1))
+    return sf.Mesh(
+        VERTICES + np.array([0, 0, z], dtype=np.float32), TRIANGLES[:, ::-1], albedo=(0, 0, 0), emission=(1, 1, 1)
+    )
 
 
 # ---- meshes ----
@@ -80,9 +82,9 @@ def changed(row: int, column: int, value: float) -> np.ndarray:
         ((VERTICES, TRIANGLES.ravel()), ValueError, r"triangles has shape \(6,\)"),
         ((VERTICES, np.zeros((0, 3), dtype=np.uint32)), ValueError, "0 triangles"),
         ((VERTICES, [[0, 1, 4]]), ValueError, "triangle 0 .*4.* 4 vertices"),
-        ((VERTICES, np.uint32([[0, 1, 2], [0, 1, 4]])), ValueError, "triangle 1 .*4.* 4 vertices"),
+        ((VERTICES, np.array([[0, 1, 2], [0, 1, 4]], dtype=np.uint32)), ValueError, "triangle 1 .*4.* 4 vertices"),
         ((VERTICES, [[0, 1, -1]]), ValueError, "-1"),
-        ((VERTICES, np.int64([[0, 1, 2**32]])), ValueError, "4294967296"),
+        ((VERTICES, np.array([[0, 1, 2**32]])), ValueError, "4294967296"),
         ((VERTICES, TRIANGLES, (1.5, 0, 0)), ValueError, r"albedo\[0\] is 1.5"),
         ((VERTICES, TRIANGLES, (0, -0.1, 0)), ValueError, r"albedo\[1\] is -0.1"),
         ((VERTICES, TRIANGLES, (0, 0, np.nan)), ValueError, r"albedo\[2\] is .*nan"),
