@@ -158,7 +158,8 @@ class _File:
         if count < 1 or (stride is not None and stride < width * dtype.itemsize):
             raise ValueError(f"an accessor of {count} rows, {stride} bytes apart")
         strides = (stride or width * dtype.itemsize, dtype.itemsize)
-        return np.ndarray((count, width), dtype, data, strides=strides)
+        rows: NDArray[Any] = np.ndarray((count, width), dtype, data, strides=strides)
+        return rows
 
     def _accessor(self, index: Any) -> NDArray[Any]:
         """Shape (count, width), integers where they are not normalized."""

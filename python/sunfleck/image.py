@@ -126,8 +126,10 @@ def _write(path: FilePath, pixels: NDArray[Any], names: Sequence[str], attribute
             raise OSError(f"can't write {str(path)!r}: {oiio.geterror()}")
         done = output.open(str(beside), spec) and output.write_image(pixels)
         reason = output.geterror()
-        if not (output.close() and done):
-            raise OSError(f"can't write {str(path)!r}: {reason or output.geterror()}")
+        closed = output.close()
+        reason += output.geterror()  # PNG's writer notes a full disk here, and returns True
+        if reason or not (done and closed):
+            raise OSError(f"can't write {str(path)!r}: {' '.join(reason.split())}")
 
 
 def write_channels(path: FilePath, channels: Channels, attributes: Mapping[str, str]) -> None:

@@ -267,7 +267,10 @@ class _Bar:
             self._bar.update(progress.samples - self._bar.n)
             return
         self._bar.total = progress.pixels
-        self._bar.set_postfix_str(f"{progress.samples / progress.pixels:.0f} samples a pixel", refresh=False)
+        spent = f"{progress.samples / progress.pixels:.0f} samples a pixel"
+        if progress.time_limit:
+            spent += f", {progress.seconds:.0f} of {progress.time_limit:g} s"
+        self._bar.set_postfix_str(spent, refresh=False)
         self._bar.update(progress.pixels_done - self._bar.n)
 
     def close(self) -> None:

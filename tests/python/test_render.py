@@ -265,8 +265,8 @@ def test_what_progress_raises_comes_through(penumbra: sf.Scene) -> None:
 
 
 def test_a_bar_is_drawn_on_stderr(penumbra: sf.Scene, capfd: pytest.CaptureFixture[str]) -> None:
-    sf.render(penumbra, 32, 32, tolerance=0.02, progress=True)
-    sf.render(penumbra, 32, 32, spp=64, progress=True)
+    sf.render(penumbra, 64, 64, tolerance=1e-9, seconds=0.5, max_spp=2**31, progress=True)
+    sf.render(penumbra, 64, 64, spp=2**31, seconds=0.5, progress=True)
     out, err = capfd.readouterr()
     assert out == ""
     assert "samples a pixel" in err

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* What points.c and the patterns' own files share. */
+#ifndef SUNFLECK_POINTS_SET_H
+#define SUNFLECK_POINTS_SET_H
+
+#include "points_kernels.h"
+#include "sunfleck/points.h"
+
+/* How many words a thread makes at a time, of 4 bytes: half of a 32 KiB first cache. */
+enum { SF_POINTS_CHUNK_WORDS = 4096 };
+
+struct sf_point_set {
+    sf_points_options options; /* with the default scramble resolved */
+    uint32_t *sides;           /* uniform, jittered: of the grid, dims (pad) of them */
+    sf_sobol_tables *sobol;
+    uint32_t *bases;           /* halton: dims primes */
+};
+
+/* A thread's place in a set: scratch that one call of a pattern's `make` leaves for the next. */
+typedef struct sf_points_cursor {
+    const sf_point_set *set;
+    const sf_points_kernels *kernels;
+    uint32_t *state;      /* sobol: the high part of the block at `next` */
+    uint64_t next;        /* index for which `state` holds; UINT64_MAX: none */
+} sf_points_cursor;
+
+/* What points.c knows of a pattern. */
+typedef struct sf_pattern_method {
+    const char *name, *description;
+    uint32_t max_dims;
+    uint64_t max_count;
+    int needs_total;
+    sf_scramble default_scramble;
+    unsigned scrambles; /* bit s: takes scramble s */
+    /* Makes the tables; NULL: there are none. */
+    sf_status (*prepare)(sf_point_set *set, sf_error *error);
+    /* Words of `rows` points from `first`, row-major; low words too unless `low` is NULL. */
+    void (*make)(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
+} sf_pattern_method;
+
+extern const sf_pattern_method sf_pattern_methods[SF_PATTERN_COUNT];
+
+/* sobol_tables.c */
+sf_status sf_sobol_prepare(sf_point_set *set, sf_error *error);
+void sf_sobol_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
+void sf_sobol_release(sf_sobol_tables *tables);
+
+/* halton.c */
+sf_status sf_halton_prepare(sf_point_set *set, sf_error *error);
+void sf_halton_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
+
+/* points_grid.c */
+sf_status sf_grid_valid_counts(uint64_t n, uint32_t dims, uint64_t *below, uint64_t *above);
+sf_status sf_grid_prepare(sf_point_set *set, sf_error *error);
+void sf_uniform_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
+void sf_jittered_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
+void sf_random_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
+
+#endif
