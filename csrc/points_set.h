@@ -11,23 +11,27 @@
 /* How many words a thread makes at a time, of 4 bytes: half of a 32 KiB first cache. */
 enum { SF_POINTS_CHUNK_WORDS = 4096 };
 
+typedef struct sf_pattern_method sf_pattern_method;
+typedef struct sf_halton_tables sf_halton_tables; /* one for each dimension */
+
 struct sf_point_set {
+    const sf_pattern_method *method;
     sf_points_options options; /* with the default scramble resolved */
-    uint32_t *sides;           /* uniform, jittered: of the grid, dims (pad) of them */
+    uint32_t *sides;           /* uniform, jittered: of the grid; NULL where the total is not given */
     sf_sobol_tables *sobol;
-    uint32_t *bases;           /* halton: dims primes */
+    sf_halton_tables *halton;
 };
 
 /* A thread's place in a set: scratch that one call of a pattern's `make` leaves for the next. */
 typedef struct sf_points_cursor {
     const sf_point_set *set;
     const sf_points_kernels *kernels;
-    uint32_t *state;      /* sobol: the high part of the block at `next` */
+    uint32_t *state;      /* sobol: the high part of the block at `next`; jittered: cells */
     uint64_t next;        /* index for which `state` holds; UINT64_MAX: none */
 } sf_points_cursor;
 
 /* What points.c knows of a pattern. */
-typedef struct sf_pattern_method {
+struct sf_pattern_method {
     const char *name, *description;
     uint32_t max_dims;
     uint64_t max_count;
@@ -38,17 +42,16 @@ typedef struct sf_pattern_method {
     sf_status (*prepare)(sf_point_set *set, sf_error *error);
     /* Words of `rows` points from `first`, row-major; low words too unless `low` is NULL. */
     void (*make)(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
-} sf_pattern_method;
+};
 
-extern const sf_pattern_method sf_pattern_methods[SF_PATTERN_COUNT];
-
-/* sobol_tables.c */
+/* sobol.c */
 sf_status sf_sobol_prepare(sf_point_set *set, sf_error *error);
 void sf_sobol_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
 void sf_sobol_release(sf_sobol_tables *tables);
 
 /* halton.c */
 sf_status sf_halton_prepare(sf_point_set *set, sf_error *error);
+void sf_halton_release(sf_halton_tables *tables, uint32_t dims);
 void sf_halton_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
 
 /* points_grid.c */

@@ -10,7 +10,8 @@
  * A coordinate is a 32-bit word; the float is its top 24 bits, never 1. The double's top 32
  * bits are that word too, and its further 21 bits continue it. Where a pattern has strata or
  * elementary intervals whose borders are not multiples of 2^-24, the word is rounded so that the
- * float still lies inside its own.
+ * float still lies inside its own. (Of halton, float and double are rounded each by itself: the
+ * double is the exact fraction to 53 bits, the float may be 2^-24 above its top bits.)
  */
 #ifndef SUNFLECK_POINTS_H
 #define SUNFLECK_POINTS_H
@@ -85,9 +86,6 @@ typedef struct sf_points_options {
                              default 0 */
     uint64_t total;       /* how many points there will be, for patterns that need to know: first +
                              count at most total; 0 (default): first + count */
-    uint32_t pad;         /* 0 (default): one pattern of `dims` dimensions. 2 or 4: sets of that many
-                             dimensions side by side, each with a seed and a shuffled order of its
-                             own, so that they are independent of each other */
     uint32_t threads;     /* 1 (default) ..; 0: one for each processor. Changes no bit */
 } sf_points_options;
 
@@ -118,7 +116,7 @@ sf_status sf_point_set_fill_u32(const sf_point_set *set, uint64_t first, size_t 
 
 /* ---- one coordinate at a time ----
  *
- * Each equals the fill with the default scramble, pad 0 and the same seed. The preconditions are
+ * Each equals the fill with the default scramble and the same seed. The preconditions are
  * asserted. */
 
 float sf_random_sample(uint64_t index, uint32_t dimension, uint64_t seed);
