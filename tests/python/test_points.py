@@ -41,7 +41,7 @@ def test_plain_halton_is_scipys() -> None:
     n, d = 1000, 20
     expected = qmc.Halton(d, scramble=False).random(n)
     ours = sf.points("halton", n, d, scramble=None, dtype="float64")
-    # Ours lies on or below the exact fraction, to stay inside its interval; SciPy sums floats.
+    # Ours is the exact fraction to 53 bits, on or above its interval's border; SciPy sums floats.
     assert np.abs(ours - expected).max() < 2e-15
 
 
@@ -60,7 +60,11 @@ def test_shape_dtype_and_interval(name: str, dtype: str) -> None:
 def test_floats_are_the_words_top_bits(name: str) -> None:
     words = sf.points(name, N, D, dtype="uint32")
     assert np.array_equal(sf.points(name, N, D), (words >> 8) * np.float32(2**-24))
-    assert np.array_equal(np.floor(sf.points(name, N, D, dtype="float64") * 2**32), words)
+    doubles = sf.points(name, N, D, dtype="float64") * 2**32
+    if name == "halton":  # each is rounded by itself, so that both lie in their elementary interval
+        assert np.abs(doubles - words).max() <= 2**8
+    else:
+        assert np.array_equal(np.floor(doubles), words)
 
 
 @pytest.mark.parametrize("name", NAMES)
