@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "platform.h"
 
 #define MAX_ATTRIBUTES 40
 #define TEXT_SIZE 96
@@ -34,17 +35,29 @@ const char *sf_stop_reason_name(sf_stop_reason reason) {
 static uint32_t round_up(uint32_t x) { return (x + SF_CELL_SIZE - 1) / SF_CELL_SIZE * SF_CELL_SIZE; }
 static uint32_t smaller(uint32_t a, uint32_t b) { return a < b ? a : b; }
 
+/* The next `bytes` of the block at *memory, on cache lines of its own. */
+static void *take(char **memory, size_t bytes) {
+    char *taken = *memory;
+    *memory += (bytes + SF_ALIGNMENT - 1) / SF_ALIGNMENT * SF_ALIGNMENT;
+    return taken;
+}
+
+/* Takes every array from one block of pages, which starts as zeros. */
 static sf_status allocate_arrays(sf_film *film, sf_error *error) {
     size_t traced = (size_t)film->width * film->height, pixels = (size_t)film->crop_width * film->crop_height;
-    film->pixels = calloc(traced, sizeof *film->pixels);
-    film->color = malloc(pixels * 3 * sizeof *film->color);
-    film->alpha = malloc(pixels * sizeof *film->alpha);
-    film->half_width = malloc(pixels * sizeof *film->half_width);
-    film->samples = malloc(pixels * sizeof *film->samples);
-    film->reason = malloc(pixels);
-    if (film->pixels && film->color && film->alpha && film->half_width && film->samples && film->reason)
-        return SF_STATUS_OK;
-    return sf_fail_memory(error, "the film", traced * sizeof *film->pixels + pixels * 25);
+    size_t rows = film->crop_height * sizeof *film->rows;
+    film->memory_bytes = traced * sizeof *film->pixels + rows + pixels * (6 * 4 + 1) + 7 * SF_ALIGNMENT;
+    film->memory = sf_pages_alloc(film->memory_bytes);
+    if (!film->memory) return sf_fail_memory(error, "the film", film->memory_bytes);
+    char *memory = film->memory;
+    film->pixels = take(&memory, traced * sizeof *film->pixels);
+    film->rows = take(&memory, rows);
+    film->color = take(&memory, pixels * 3 * sizeof *film->color);
+    film->alpha = take(&memory, pixels * sizeof *film->alpha);
+    film->half_width = take(&memory, pixels * sizeof *film->half_width);
+    film->samples = take(&memory, pixels * sizeof *film->samples);
+    film->reason = take(&memory, pixels);
+    return SF_STATUS_OK;
 }
 
 sf_status sf_film_create(const sf_render_options *options, sf_film **out, sf_error *error) {
@@ -70,12 +83,7 @@ sf_status sf_film_create(const sf_render_options *options, sf_film **out, sf_err
 
 void sf_film_destroy(sf_film *film) {
     if (!film) return;
-    free(film->pixels);
-    free(film->color);
-    free(film->alpha);
-    free(film->half_width);
-    free(film->samples);
-    free(film->reason);
+    sf_pages_free(film->memory, film->memory_bytes);
     for (size_t i = 0; i < film->attribute_count; ++i) free((char *)film->attributes[i].text);
     free(film->attributes);
     free(film);
@@ -90,35 +98,68 @@ float sf_film_half_width(const sf_film_pixel *pixel, double z) {
     return (float)(z * sf_vector_moments_standard_error(&pixel->moments) * sqrt(1.0 / 3.0));
 }
 
-static void resolve_pixel(sf_film *film, const sf_film_pixel *pixel, size_t i, uint32_t x, uint32_t y) {
-    sf_film_summary *summary = &film->summary;
+/* The accumulators of row y of the crop. */
+static const sf_film_pixel *row_pixels(const sf_film *film, uint32_t y) {
+    return film->pixels + (size_t)(y + film->crop_y0 - film->y0) * film->width + (film->crop_x0 - film->x0);
+}
+
+void sf_film_sum_row(sf_film *film, uint32_t y) {
+    const sf_film_pixel *pixels = row_pixels(film, y);
+    double sum = 0;
+    for (uint32_t x = 0; x < film->crop_width; ++x) {
+        const double *mean = pixels[x].moments.mean;
+        sum += (mean[0] + mean[1] + mean[2]) / 3;
+    }
+    film->rows[y].level = sum;
+}
+
+double sf_film_level(const sf_film *film) {
+    double sum = 0;
+    for (uint32_t y = 0; y < film->crop_height; ++y) sum += film->rows[y].level;
+    return sum / ((double)film->crop_width * film->crop_height);
+}
+
+static void resolve_pixel(sf_film *film, const sf_film_pixel *pixel, size_t i) {
     const sf_vector_moments *moments = &pixel->moments;
     for (int c = 0; c < 3; ++c) film->color[3 * i + c] = (float)moments->mean[c];
     film->alpha[i] = moments->count ? (float)((double)pixel->hits / (double)moments->count) : 0;
     film->half_width[i] = pixel->half_width;
     film->samples[i] = (uint32_t)moments->count;
     film->reason[i] = pixel->reason;
-    summary->samples += moments->count + moments->nonfinite;
-    summary->nonfinite_samples += moments->nonfinite;
-    ++summary->reasons[pixel->reason];
-    summary->mean_half_width += (double)pixel->half_width;
-    if (!((double)pixel->half_width > summary->worst_half_width)) return;
-    summary->worst_half_width = (double)pixel->half_width;
-    summary->worst_x = x;
-    summary->worst_y = y;
 }
 
-void sf_film_resolve(sf_film *film) {
+void sf_film_resolve_row(sf_film *film, uint32_t y) {
+    const sf_film_pixel *pixels = row_pixels(film, y);
+    sf_film_row row = {.level = film->rows[y].level, .worst = -1};
+    for (uint32_t x = 0; x < film->crop_width; ++x) {
+        const sf_film_pixel *pixel = pixels + x;
+        resolve_pixel(film, pixel, (size_t)y * film->crop_width + x);
+        row.samples += pixel->moments.count + pixel->moments.nonfinite;
+        row.nonfinite += pixel->moments.nonfinite;
+        ++row.reasons[pixel->reason];
+        row.half_width += (double)pixel->half_width;
+        if (!((double)pixel->half_width > row.worst)) continue;
+        row.worst = (double)pixel->half_width;
+        row.worst_x = x + film->crop_x0;
+    }
+    film->rows[y] = row;
+}
+
+void sf_film_summarize_rows(sf_film *film) {
     sf_film_summary *summary = &film->summary;
     summary->pixels = (uint64_t)film->crop_width * film->crop_height;
     summary->worst_half_width = -1;
-    for (uint32_t y = 0; y < film->crop_height; ++y)
-        for (uint32_t x = 0; x < film->crop_width; ++x) {
-            size_t at = (size_t)(y + film->crop_y0 - film->y0) * film->width + (x + film->crop_x0 - film->x0);
-            resolve_pixel(film, film->pixels + at, (size_t)y * film->crop_width + x, x + film->crop_x0,
-                          y + film->crop_y0);
-        }
-    summary->mean_half_width /= (double)summary->pixels;
+    for (uint32_t y = 0; y < film->crop_height; ++y) {
+        const sf_film_row *row = film->rows + y;
+        summary->samples += row->samples;
+        summary->nonfinite_samples += row->nonfinite;
+        for (int reason = 0; reason < SF_STOP_REASON_COUNT; ++reason) summary->reasons[reason] += row->reasons[reason];
+        summary->mean_half_width += row->half_width / (double)summary->pixels;
+        if (!(row->worst > summary->worst_half_width)) continue;
+        summary->worst_half_width = row->worst;
+        summary->worst_x = row->worst_x;
+        summary->worst_y = y + film->crop_y0;
+    }
 }
 
 uint32_t sf_film_width(const sf_film *film) { return film->crop_width; }

@@ -23,11 +23,22 @@ typedef struct sf_film_pixel {
     uint8_t stopped;
 } sf_film_pixel;
 
+/* What a row of the crop adds to the summary; rows are filled by any thread, and summed in order. */
+typedef struct sf_film_row {
+    uint64_t samples, nonfinite, reasons[SF_STOP_REASON_COUNT];
+    double level; /* sum of (R+G+B)/3 */
+    double half_width, worst;
+    uint32_t worst_x;
+} sf_film_row;
+
 /* The cells that the crop touches, in pixels of the full frame, and what is kept of them. */
 struct sf_film {
     uint32_t x0, y0, width, height;         /* of the traced region */
     uint32_t crop_x0, crop_y0, crop_width, crop_height;
+    void *memory;                           /* that the arrays below lie in */
+    size_t memory_bytes;
     sf_film_pixel *pixels;                  /* width * height */
+    sf_film_row *rows;                      /* crop_height */
     float *color;                           /* of the crop, 3 * crop_width * crop_height */
     float *alpha;
     float *half_width;
@@ -48,10 +59,19 @@ void sf_film_add(sf_film_pixel *pixel, const sf_block_statistics *block);
  * equal to it where the channels move together. Infinity for fewer than two samples. */
 float sf_film_half_width(const sf_film_pixel *pixel, double z);
 
-/* Fills the crop's arrays and the counts of the summary from the accumulators. */
-void sf_film_resolve(sf_film *film);
+/* Sums (R+G+B)/3 over row y of the crop, for sf_film_level once all rows are. */
+void sf_film_sum_row(sf_film *film, uint32_t y);
 
-/* Records the options as attributes; after sf_film_resolve and with the summary complete. */
+/* The mean over the crop of (R+G+B)/3, summed in the order of the rows. */
+double sf_film_level(const sf_film *film);
+
+/* Fills row y of the crop's arrays from the accumulators. */
+void sf_film_resolve_row(sf_film *film, uint32_t y);
+
+/* Fills the counts of the summary, once every row is resolved. */
+void sf_film_summarize_rows(sf_film *film);
+
+/* Records the options as attributes; after sf_film_summarize_rows and with the summary complete. */
 sf_status sf_film_describe(sf_film *film, const sf_scene *scene, const sf_render_options *options, sf_isa isa,
                            sf_error *error);
 

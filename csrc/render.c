@@ -137,6 +137,7 @@ static void choose_keys(render *r, render_worker *worker, uint32_t cell, uint64_
 }
 
 static void sample_cell(render *r, render_worker *worker, uint32_t cell) {
+    if (sf_atomic_load(&r->state) != RUNNING) return;
     uint64_t active = r->active[cell], keys[CELL_PIXELS];
     sf_batch *batch = &worker->batch;
     choose_keys(r, worker, cell, active, keys);
@@ -183,6 +184,20 @@ static void sample_tile(void *user, unsigned worker, size_t item) {
     if (sf_atomic_load(&r->state) == RUNNING) for_each_cell(r, worker, item, sample_cell);
 }
 
+/* ---- progress ---- */
+
+static void report(render *r, bool round_finished) {
+    if (!r->options.progress) return;
+    sf_progress *p = &r->progress;
+    p->samples = 0;
+    for (uint32_t i = 0; i < r->options.threads; ++i) p->samples += sf_atomic_load(&r->workers[i].samples);
+    p->seconds = sf_seconds_now() - r->start;
+    p->round_finished = round_finished;
+    if (r->options.progress(p, r->options.progress_user) != 0) sf_atomic_store(&r->state, INTERRUPTED);
+}
+
+static void wake(void *user) { report(user, false); }
+
 /* ---- decisions ---- */
 
 /* Whether the pixel is done, and why. */
@@ -213,16 +228,19 @@ static void decide_cell(render *r, render_worker *worker, uint32_t cell) {
 
 static void decide_tile(void *user, unsigned worker, size_t item) { for_each_cell(user, worker, item, decide_cell); }
 
-/* The level: the mean over the crop of (R+G+B)/3, summed in the order of the pixels. */
-static double measure_level(const sf_film *film) {
-    double sum = 0;
-    for (uint32_t y = 0; y < film->crop_height; ++y)
-        for (uint32_t x = 0; x < film->crop_width; ++x) {
-            const sf_film_pixel *pixel = film->pixels +
-                                         (size_t)(y + film->crop_y0 - film->y0) * film->width + (x + film->crop_x0 - film->x0);
-            sum += (pixel->moments.mean[0] + pixel->moments.mean[1] + pixel->moments.mean[2]) / 3;
-        }
-    return sum / ((double)film->crop_width * film->crop_height);
+static void sum_row(void *user, unsigned worker, size_t item) {
+    (void)worker;
+    sf_film_sum_row(((render *)user)->film, (uint32_t)item);
+}
+
+static void measure_level(render *r) {
+    sf_pool_run(r->pool, r->film->crop_height, sum_row, wake, r);
+    r->film->summary.level = sf_film_level(r->film);
+}
+
+static void resolve_row(void *user, unsigned worker, size_t item) {
+    (void)worker;
+    sf_film_resolve_row(((render *)user)->film, (uint32_t)item);
 }
 
 /* Fixes level and tolerance after the first min_spp samples. A negative tolerance: none was asked. */
@@ -231,7 +249,7 @@ static void fix_tolerance(render *r) {
     sf_film_summary *summary = &r->film->summary;
     if (r->to < o->min_spp || r->level_fixed) return;
     r->level_fixed = true;
-    summary->level = measure_level(r->film);
+    measure_level(r);
     if (o->relative_tolerance > 0 || o->absolute_tolerance > 0)
         summary->tolerance = fmax(o->absolute_tolerance, o->relative_tolerance * summary->level);
 }
@@ -251,18 +269,6 @@ static uint32_t next_target(const render *r, uint32_t n) {
 }
 
 /* ---- the whole ---- */
-
-static void report(render *r, bool round_finished) {
-    if (!r->options.progress) return;
-    sf_progress *p = &r->progress;
-    p->samples = 0;
-    for (uint32_t i = 0; i < r->options.threads; ++i) p->samples += sf_atomic_load(&r->workers[i].samples);
-    p->seconds = sf_seconds_now() - r->start;
-    p->round_finished = round_finished;
-    if (r->options.progress(p, r->options.progress_user) != 0) sf_atomic_store(&r->state, INTERRUPTED);
-}
-
-static void wake(void *user) { report(user, false); }
 
 static bool tile_is_active(const render *r, uint32_t tile) {
     cell_range range = tile_range(r, tile);
@@ -310,6 +316,15 @@ static void run_rounds(render *r) {
     if (summary->tolerance < 0) summary->tolerance = 0;
 }
 
+/* The pixels of a cell of which `width` columns and `height` rows lie in the film. */
+static uint64_t pixels_inside(uint32_t width, uint32_t height) {
+    if (width >= SF_CELL_SIZE && height >= SF_CELL_SIZE) return UINT64_MAX;
+    uint64_t inside = 0;
+    for (uint32_t m = 0; m < CELL_PIXELS; ++m)
+        if (morton_x(m) < width && morton_y(m) < height) inside |= UINT64_C(1) << m;
+    return inside;
+}
+
 static sf_status lay_out_cells(render *r, sf_error *error) {
     const sf_film *film = r->film;
     r->cell_columns = (film->width + SF_CELL_SIZE - 1) / SF_CELL_SIZE;
@@ -321,15 +336,13 @@ static sf_status lay_out_cells(render *r, sf_error *error) {
     r->tile_columns = (x0 + r->cell_columns - r->tile_x0 + r->tile_cells - 1) / r->tile_cells;
     r->tile_rows = (y0 + r->cell_rows - r->tile_y0 + r->tile_cells - 1) / r->tile_cells;
     size_t cells = (size_t)r->cell_columns * r->cell_rows, tiles = (size_t)r->tile_columns * r->tile_rows;
-    r->active = calloc(cells, sizeof *r->active);
+    r->active = malloc(cells * sizeof *r->active);
     r->tiles = malloc(tiles * sizeof *r->tiles);
     if (!r->active || !r->tiles) return sf_fail_memory(error, "the lists of cells and tiles", cells * 8 + tiles * 4);
-    for (uint32_t y = 0; y < film->height; ++y)
-        for (uint32_t x = 0; x < film->width; ++x) {
-            uint32_t m = 0;
-            for (uint32_t bit = 0; bit < 3; ++bit) m |= (x >> bit & 1u) << 2 * bit | (y >> bit & 1u) << (2 * bit + 1);
-            r->active[(size_t)(y / SF_CELL_SIZE) * r->cell_columns + x / SF_CELL_SIZE] |= UINT64_C(1) << m;
-        }
+    for (uint32_t y = 0; y < r->cell_rows; ++y)
+        for (uint32_t x = 0; x < r->cell_columns; ++x)
+            r->active[(size_t)y * r->cell_columns + x] =
+                pixels_inside(film->width - x * SF_CELL_SIZE, film->height - y * SF_CELL_SIZE);
     list_tiles(r);
     return SF_STATUS_OK;
 }
@@ -372,8 +385,9 @@ static void finish(render *r) {
     for (uint32_t i = 0; i < r->options.threads; ++i) summary->traced_samples += sf_atomic_load(&r->workers[i].samples);
     summary->confidence = r->options.confidence;
     summary->threads = r->options.threads;
-    if (!r->level_fixed) summary->level = measure_level(r->film);
-    sf_film_resolve(r->film);
+    if (!r->level_fixed) measure_level(r);
+    sf_pool_run(r->pool, r->film->crop_height, resolve_row, wake, r);
+    sf_film_summarize_rows(r->film);
     summary->seconds = sf_seconds_now() - r->start;
 }
 
