@@ -10,7 +10,8 @@
 #include "platform.h"
 #include "scene_data.h"
 
-#define LIMIT 1e18f /* of coordinates and radiance: their squares and products stay finite */
+#define LENGTH_LIMIT 1e12f   /* volumes, which Embree computes, stay finite */
+#define RADIANCE_LIMIT 1e18f /* sums and products with weights stay finite */
 #define PAGE_SIZE 4096
 
 sf_mesh sf_mesh_default(void) {
@@ -74,9 +75,9 @@ static sf_status check_color(const char *what, const float *color, float upper, 
 
 static sf_status check_vector(const char *what, const float *v, sf_error *error) {
     for (int c = 0; c < 3; ++c)
-        if (!(fabsf(v[c]) <= LIMIT))
+        if (!(fabsf(v[c]) <= LENGTH_LIMIT))
             return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s[%d] is %g; it must be finite and at most %g in size", what,
-                           c, (double)v[c], (double)LIMIT);
+                           c, (double)v[c], (double)LENGTH_LIMIT);
     return SF_STATUS_OK;
 }
 
@@ -89,17 +90,17 @@ static sf_status check_mesh(const sf_mesh *mesh, size_t number, sf_error *error)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "mesh %zu has %zu triangles; it must have 1 to 2^32 - 1", number,
                        mesh->triangles ? mesh->triangle_count : 0);
     for (size_t i = 0; i < 3 * mesh->vertex_count; ++i)
-        if (!(fabsf(mesh->vertices[i]) <= LIMIT))
+        if (!(fabsf(mesh->vertices[i]) <= LENGTH_LIMIT))
             return sf_fail(error, SF_STATUS_INVALID_VALUE,
                            "mesh %zu: coordinate %zu of vertex %zu is %g; it must be finite and at most %g in size",
-                           number, i % 3, i / 3, (double)mesh->vertices[i], (double)LIMIT);
+                           number, i % 3, i / 3, (double)mesh->vertices[i], (double)LENGTH_LIMIT);
     for (size_t i = 0; i < 3 * mesh->triangle_count; ++i)
         if (mesh->triangles[i] >= mesh->vertex_count)
             return sf_fail(error, SF_STATUS_INVALID_VALUE,
                            "mesh %zu: triangle %zu has vertex index %u; the mesh has %zu vertices", number, i / 3,
                            mesh->triangles[i], mesh->vertex_count);
     sf_status status = check_color("albedo", mesh->albedo, 1, error);
-    return status ? status : check_color("emission", mesh->emission, LIMIT, error);
+    return status ? status : check_color("emission", mesh->emission, RADIANCE_LIMIT, error);
 }
 
 /* Embree loads the last vertex and the last index triple with 16-byte reads: up to 4 bytes past
@@ -220,13 +221,13 @@ sf_status sf_scene_set_camera(sf_scene *scene, const sf_camera *camera, sf_error
     if (!(camera->vertical_fov > 0 && camera->vertical_fov < 180))
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "vertical_fov is %g; it must be in (0, 180) degrees",
                        (double)camera->vertical_fov);
-    if (!(camera->aperture_radius >= 0 && camera->aperture_radius <= LIMIT))
+    if (!(camera->aperture_radius >= 0 && camera->aperture_radius <= LENGTH_LIMIT))
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "aperture_radius is %g; it must be in [0, %g]",
-                       (double)camera->aperture_radius, (double)LIMIT);
-    if (!(camera->focus_distance >= 0 && camera->focus_distance <= LIMIT))
+                       (double)camera->aperture_radius, (double)LENGTH_LIMIT);
+    if (!(camera->focus_distance >= 0 && camera->focus_distance <= LENGTH_LIMIT))
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
                        "focus_distance is %g; it must be in (0, %g], or 0 for the target's", (double)camera->focus_distance,
-                       (double)LIMIT);
+                       (double)LENGTH_LIMIT);
     double f[3], f2 = 0, up2 = 0, cross2 = 0;
     for (int c = 0; c < 3; ++c) {
         f[c] = (double)camera->target[c] - camera->position[c];
@@ -251,7 +252,7 @@ sf_status sf_scene_set_camera(sf_scene *scene, const sf_camera *camera, sf_error
 
 sf_status sf_scene_set_background(sf_scene *scene, const float radiance[3], sf_error *error) {
     sf_status status = refuse_committed(scene, error);
-    if (!status) status = check_color("background", radiance, LIMIT, error);
+    if (!status) status = check_color("background", radiance, RADIANCE_LIMIT, error);
     if (!status) memcpy(scene->background, radiance, sizeof scene->background);
     return status;
 }
@@ -282,11 +283,31 @@ static sf_status build_mesh_table(sf_scene *scene, sf_error *error) {
     return SF_STATUS_OK;
 }
 
+/* The power of two next to 1 / extent^2: exact, and the squares of normals stay floats. */
+static float normal_scale(const sf_scene_info *info) {
+    float extent = 0;
+    for (int c = 0; c < 3; ++c) extent = fmaxf(extent, info->bounds_upper[c] - info->bounds_lower[c]);
+    int exponent = 0;
+    frexpf(extent, &exponent);
+    return extent > 0 ? ldexpf(1, -2 * exponent) : 1;
+}
+
+/* Frees what a failed commit left. */
+static void drop_tables(sf_scene *scene) {
+    for (int c = 0; c < SF_MESH_COLUMNS; ++c) {
+        sf_aligned_free(scene->mesh_table.columns[c]);
+        scene->mesh_table.columns[c] = NULL;
+    }
+    sf_lights_free(&scene->lights);
+    memset(&scene->lights, 0, sizeof scene->lights);
+}
+
 sf_status sf_scene_commit(sf_scene *scene, sf_error *error) {
     sf_status status = refuse_committed(scene, error);
     if (status) return status;
     if (scene->info.mesh_count == 0)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "the scene has no mesh; add at least one");
+    drop_tables(scene);
     status = build_mesh_table(scene, error);
     if (!status) status = sf_lights_build(scene, error);
     if (status) return status;
@@ -303,6 +324,7 @@ sf_status sf_scene_commit(sf_scene *scene, sf_error *error) {
     info->hash = hash_bytes(info->hash, &scene->camera, sizeof scene->camera);
     info->hash = hash_bytes(info->hash, scene->background, sizeof scene->background);
     info->hash = sf_hash64(info->hash, scene->max_bounces);
+    scene->normal_scale = normal_scale(info);
     sf_plan_derive(scene, &scene->plan);
     scene->committed = true;
     return SF_STATUS_OK;

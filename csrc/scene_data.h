@@ -75,6 +75,7 @@ struct sf_scene {
     sf_camera camera;
     float background[3];
     uint32_t max_bounces;
+    float normal_scale; /* brings Embree's normals, of the length of areas, to the order of 1 */
     sf_scene_info info;
     sf_mesh_table mesh_table;
     sf_light_table lights;

@@ -127,8 +127,12 @@ static void first_radiance(sf_batch *b, const sf_scene *scene) {
             for (int c = 0; c < 3; ++c) b->radiance[c][i] += b->covered[i] > 0 ? 0.0f : scene->background[c];
 }
 
-/* The power heuristic with exponent 2 (Veach 1997, eq. 9.11). */
-static inline float power_weight(float pdf, float other) { return pdf * pdf / (pdf * pdf + other * other); }
+/* The power heuristic with exponent 2 (Veach 1997, eq. 9.11), pdf^2 / (pdf^2 + other^2), by the
+ * ratio: the squares of densities by solid angle leave the floats' range in large scenes. */
+static inline float power_weight(float pdf, float other) {
+    float ratio = other / pdf;
+    return 1 / (1 + ratio * ratio);
+}
 
 static void later_emission(sf_batch *b, const sf_scene *scene, uint32_t n) {
     look_up(&scene->mesh_table, SF_MESH_EMISSION_R, 3, b->mesh, n, b->emission);
@@ -274,13 +278,13 @@ static inline void connect(sf_batch *b, const sf_light_table *lights, uint32_t r
     float ax = fabsf(lifted[0]), ay = fabsf(lifted[1]), az = fabsf(lifted[2]);
     float largest = ax > ay ? ax : ay;
     largest = largest > az ? largest : az;
-    float square = to[0] * to[0] + to[1] * to[1] + to[2] * to[2], distance = sqrtf(square);
+    float square = to[0] * to[0] + to[1] * to[1] + to[2] * to[2], distance = sqrtf(square), inverse = 1 / square;
     float lift = 0x1p-18f * (largest + distance);
     float cos_surface = to[0] * b->normal[0][i] + to[1] * b->normal[1][i] + to[2] * b->normal[2][i];
     float cos_light = -(to[0] * normal[0] + to[1] * normal[1] + to[2] * normal[2]);
     bool sees = (cos_surface > 0) & (cos_light > 0);
     /* cos cos / distance^2, each cosine still times the distance. */
-    float geometry = sees ? cos_surface * cos_light / (square * square) : 0.0f;
+    float geometry = sees ? cos_surface * inverse * (cos_light * inverse) : 0.0f;
     if (weigh) {
         float surface_pdf = cos_surface * (1.0f / SF_PI_F) / distance;
         float light_pdf = column[SF_LIGHT_PDF][row] * square * distance / cos_light;

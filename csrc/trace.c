@@ -13,11 +13,15 @@ static void set_valid(int valid[SF_LANES], uint32_t bits) {
     for (uint32_t l = 0; l < SF_LANES; ++l) valid[l] = -(int)(bits >> l & 1u);
 }
 
-static void take_hits(sf_batch *b, const struct RTCRayHit16 *rays, uint32_t first, uint32_t miss) {
+static void take_hits(sf_batch *b, const sf_scene *scene, const struct RTCRayHit16 *rays, uint32_t first) {
+    float scale = scene->normal_scale;
+    uint32_t miss = scene->mesh_table.miss;
     memcpy(b->distance + first, rays->ray.tfar, sizeof rays->ray.tfar);
-    memcpy(b->hit_normal[0] + first, rays->hit.Ng_x, sizeof rays->hit.Ng_x);
-    memcpy(b->hit_normal[1] + first, rays->hit.Ng_y, sizeof rays->hit.Ng_y);
-    memcpy(b->hit_normal[2] + first, rays->hit.Ng_z, sizeof rays->hit.Ng_z);
+    for (int l = 0; l < SF_LANES; ++l) {
+        b->hit_normal[0][first + l] = rays->hit.Ng_x[l] * scale;
+        b->hit_normal[1][first + l] = rays->hit.Ng_y[l] * scale;
+        b->hit_normal[2][first + l] = rays->hit.Ng_z[l] * scale;
+    }
     for (int l = 0; l < SF_LANES; ++l) {
         uint32_t mesh = rays->hit.geomID[l];
         b->mesh[first + l] = mesh < miss ? mesh : miss;
@@ -43,7 +47,7 @@ void sf_trace_nearest(sf_batch *b, const sf_scene *scene, uint32_t packets, cons
         memset(rays.hit.instID, 0xff, sizeof rays.hit.instID);
         set_valid(valid, active[p]);
         sf_embree_intersect16(scene->embree, valid, &rays, coherence);
-        take_hits(b, &rays, first, scene->mesh_table.miss);
+        take_hits(b, scene, &rays, first);
     }
 }
 

@@ -26,7 +26,7 @@ typedef struct sf_scene sf_scene;
  * on another memory page (1 array in 1,000), the scene makes one copy instead, and
  * sf_scene_info.copied_bytes says how much. */
 typedef struct sf_mesh {
-    const float *vertices;     /* vertex_count * 3, finite, |coordinate| <= 1e18 */
+    const float *vertices;     /* vertex_count * 3, finite, |coordinate| <= 1e12 */
     size_t vertex_count;       /* 3 .. 2^32 - 1 */
     const uint32_t *triangles; /* triangle_count * 3, each < vertex_count */
     size_t triangle_count;     /* 1 .. 2^32 - 1 */
