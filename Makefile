@@ -16,16 +16,17 @@ venv = .venv/bin/python
 MITSUBA_PYTHON = build/mitsuba/bin/python
 with_mitsuba = PYTHONPATH=$$($(venv) -c 'import sysconfig; print(sysconfig.get_path("platlib"))') $(MITSUBA_PYTHON)
 
-.PHONY: help demo test lint bench clean packages-demo packages-test build-c
+.PHONY: help demo test sanitize lint bench clean packages-demo packages-test build-c
 .DELETE_ON_ERROR:
 .NOTPARALLEL: # packages come first; CMake and pip use all processors themselves
 
 help:
-	@echo "make demo   renders pictures to a stated tolerance into out/"
-	@echo "make test   builds everything, runs the C and the Python tests"
-	@echo "make lint   ruff, mypy --strict, warnings as errors, clang-format where there is one"
-	@echo "make bench  measures speed and accuracy; figures go to standard output"
-	@echo "make clean  removes build/, out/, dist/ and .venv/"
+	@echo "make demo      renders pictures to a stated tolerance into out/"
+	@echo "make test      builds everything, runs the C and the Python tests"
+	@echo "make sanitize  runs the C tests under AddressSanitizer with UBSan, then ThreadSanitizer"
+	@echo "make lint      ruff, mypy --strict, warnings as errors, clang-format where there is one"
+	@echo "make bench     measures speed and accuracy; figures go to standard output"
+	@echo "make clean     removes build/, out/, dist/ and .venv/"
 
 demo: packages-demo .venv/.demo
 	$(venv) examples/demo.py
@@ -33,6 +34,14 @@ demo: packages-demo .venv/.demo
 test: packages-test build-c .venv/.test
 	ctest --test-dir build --output-on-failure
 	$(venv) -m pytest
+
+sanitize: packages-test
+	for kind in address,undefined thread; do \
+	    CMAKE_GENERATOR=Ninja cmake -S . -B build/$$kind -D CMAKE_BUILD_TYPE=Release -D SUNFLECK_SANITIZE=$$kind \
+	        -D SUNFLECK_BUILD_IMAGE=OFF && \
+	    cmake --build build/$$kind --parallel && \
+	    ctest --test-dir build/$$kind --output-on-failure || exit 1; \
+	done
 
 lint: packages-test .venv/.lint
 	.venv/bin/ruff check .
