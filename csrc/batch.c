@@ -49,6 +49,7 @@ static void connect_lights(run *r, uint32_t bounce, uint32_t count) {
     r->shade->light(r->batch, r->context->scene, count, weigh);
     uint32_t rays = r->shade->sort_shadow_rays(r->batch, count);
     sf_trace_shadow(r->batch, r->context->scene, rays);
+    r->shade->add_light(r->batch, count);
 }
 
 /* Surface-sampled rays from the vertices, and the radiance that they find. */

@@ -57,6 +57,7 @@ typedef struct sf_batch {
     float contribution[3][SF_PATHS]; /* if nothing is in between */
     uint32_t bin[SF_PATHS];          /* of the shadow ray: packets are formed within bins */
     uint32_t order[SF_PATHS];        /* a permutation of rays */
+    float arrives[SF_PATHS];         /* 1 where nothing is in between */
     float gather[SF_PATHS];          /* scratch of compaction */
 
     float radiance[3][SF_PATHS]; /* by path */
@@ -75,8 +76,7 @@ void sf_batch_run(sf_batch *batch, const sf_render_context *context);
 void sf_trace_nearest(sf_batch *batch, const sf_scene *scene, uint32_t packets, const uint32_t *active,
                       sf_coherence coherence);
 
-/* trace.c: shadow rays order[0 .. count - 1] from `point` along `to_light`; adds the contribution
- * of those that arrive to the radiance of their paths. */
+/* trace.c: shadow rays order[0 .. count - 1] from `point` along `to_light`; fills `arrives`. */
 void sf_trace_shadow(sf_batch *batch, const sf_scene *scene, uint32_t count);
 
 #endif

@@ -122,17 +122,16 @@ static size_t list_candidates(const sf_scene *scene, candidate *out) {
 }
 
 static sf_status allocate_lights(sf_light_table *lights, size_t count, sf_error *error) {
-    for (int c = 0; c < SF_LIGHT_COLUMNS; ++c) {
-        lights->columns[c] = sf_aligned_alloc(count * sizeof(float));
-        if (!lights->columns[c]) return sf_fail_memory(error, "the table of lights", count * sizeof(float));
-    }
+    lights->pieces = sf_aligned_alloc(count * sizeof *lights->pieces);
+    if (!lights->pieces) return sf_fail_memory(error, "the table of lights", count * sizeof *lights->pieces);
+    memset(lights->pieces, 0, count * sizeof *lights->pieces);
     lights->alias = sf_aligned_alloc(count * sizeof *lights->alias);
     if (!lights->alias) return sf_fail_memory(error, "the alias table of lights", count * sizeof *lights->alias);
     return SF_STATUS_OK;
 }
 
 void sf_lights_free(sf_light_table *lights) {
-    for (int c = 0; c < SF_LIGHT_COLUMNS; ++c) sf_aligned_free(lights->columns[c]);
+    sf_aligned_free(lights->pieces);
     sf_aligned_free(lights->alias);
     memset(lights, 0, sizeof *lights);
 }
@@ -146,12 +145,12 @@ static double write_piece(sf_light_table *lights, size_t row, const sf_mesh *mes
     sf_triangle_cross(k, i, j, n);
     double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     for (int c = 0; c < 3; ++c) {
-        lights->columns[SF_LIGHT_ORIGIN_X + c][row] = k[c];
-        lights->columns[SF_LIGHT_EDGE1_X + c][row] = i[c] - k[c];
-        lights->columns[SF_LIGHT_EDGE2_X + c][row] = j[c] - k[c];
-        lights->columns[SF_LIGHT_NORMAL_X + c][row] = (float)(n[c] / length);
+        lights->pieces[row][SF_LIGHT_ORIGIN_X + c] = k[c];
+        lights->pieces[row][SF_LIGHT_EDGE1_X + c] = i[c] - k[c];
+        lights->pieces[row][SF_LIGHT_EDGE2_X + c] = j[c] - k[c];
+        lights->pieces[row][SF_LIGHT_NORMAL_X + c] = (float)(n[c] / length);
     }
-    lights->columns[SF_LIGHT_RECTANGLE][row] = piece->rectangle;
+    lights->pieces[row][SF_LIGHT_RECTANGLE] = piece->rectangle;
     return piece->rectangle ? length : 0.5 * length;
 }
 
@@ -163,7 +162,7 @@ static sf_status build_alias(sf_light_table *lights, double *share, sf_error *er
     for (size_t i = 0; i < n; ++i) order[share[i] < 1 ? small++ : --large] = (uint32_t)i;
     while (small > 0 && large < n) {
         uint32_t s = order[--small], l = order[large];
-        lights->columns[SF_LIGHT_KEEP][s] = (float)share[s];
+        lights->pieces[s][SF_LIGHT_KEEP] = (float)share[s];
         lights->alias[s] = l;
         share[l] -= 1 - share[s];
         if (share[l] < 1) {
@@ -174,7 +173,7 @@ static sf_status build_alias(sf_light_table *lights, double *share, sf_error *er
     /* What is left differs from 1 by rounding only. */
     for (size_t i = 0; i < n; ++i) {
         if (i >= small && i < large) continue;
-        lights->columns[SF_LIGHT_KEEP][order[i]] = 1;
+        lights->pieces[order[i]][SF_LIGHT_KEEP] = 1;
         lights->alias[order[i]] = order[i];
     }
     free(order);
@@ -200,8 +199,8 @@ static sf_status fill_lights(sf_scene *scene, const candidate *candidates, size_
         const float *emission = scene->meshes[m].mesh.emission;
         /* Probability area x radiance / total, over the area: radiance / total. */
         double pdf = ((double)emission[0] + emission[1] + emission[2]) / total;
-        for (int c = 0; c < 3; ++c) lights->columns[SF_LIGHT_WEIGHT_R + c][row] = (float)(emission[c] / (pdf * PI));
-        lights->columns[SF_LIGHT_PDF][row] = (float)pdf;
+        for (int c = 0; c < 3; ++c) lights->pieces[row][SF_LIGHT_WEIGHT_R + c] = (float)(emission[c] / (pdf * PI));
+        lights->pieces[row][SF_LIGHT_PDF] = (float)pdf;
         scene->mesh_table.columns[SF_MESH_LIGHT_PDF][m] = (float)pdf;
         power[row] *= (double)lights->count / total;
         ++row;

@@ -31,6 +31,14 @@
 #define SF_INDEPENDENT _Pragma("GCC ivdep")
 #endif
 
+/* Keeps a short loop a loop, for the vectorizer to take: unrolled first, it is taken apart into
+ * scalars. */
+#if defined(__clang__)
+#define SF_ROLLED _Pragma("clang loop unroll(disable)")
+#else
+#define SF_ROLLED _Pragma("GCC unroll 1")
+#endif
+
 #define SF_PRINTF(text, first) __attribute__((format(printf, text, first)))
 
 /* Aligned heap memory; NULL when there is none. Freed with sf_aligned_free. */

@@ -28,9 +28,9 @@ typedef struct sf_mesh_table {
     uint32_t miss; /* the row of a miss */
 } sf_mesh_table;
 
-/* The pieces that light is sampled from, as columns. A piece is a triangle or a parallelogram
+/* What is known of a piece that light is sampled from: a triangle, or a parallelogram
  * origin + s edge1 + t edge2 with unit normal along edge1 x edge2. */
-typedef enum sf_light_column {
+typedef enum sf_light_field {
     SF_LIGHT_ORIGIN_X,
     SF_LIGHT_ORIGIN_Y,
     SF_LIGHT_ORIGIN_Z,
@@ -48,14 +48,15 @@ typedef enum sf_light_column {
     SF_LIGHT_WEIGHT_B,
     SF_LIGHT_PDF,       /* density by area over all the lights together */
     SF_LIGHT_RECTANGLE, /* 1 for a parallelogram, 0 for a triangle */
-    SF_LIGHT_KEEP,      /* alias table: probability to keep the column drawn */
-    SF_LIGHT_COLUMNS
-} sf_light_column;
+    SF_LIGHT_SAMPLED,   /* how many fields a sample needs: those above */
+    SF_LIGHT_KEEP = SF_LIGHT_SAMPLED, /* alias table: probability to keep the piece drawn */
+    SF_LIGHT_FIELDS = 32 /* two cache lines a piece, whichever of many is drawn */
+} sf_light_field;
 
 typedef struct sf_light_table {
     size_t count;
     size_t rectangle_count;
-    float *columns[SF_LIGHT_COLUMNS];
+    float (*pieces)[SF_LIGHT_FIELDS];
     uint32_t *alias; /* alias table: the other piece of each column */
 } sf_light_table;
 

@@ -259,20 +259,25 @@ static float (*by_ray(sf_batch *b, uint32_t count, int coordinates))[SF_PATHS] {
     return b->coordinate_by_ray;
 }
 
-/* What connects a vertex to a point of a light piece; `row` is the piece. */
-static inline void connect(sf_batch *b, const sf_light_table *lights, uint32_t row, uint32_t i, float s, float t,
+/* The pieces that the 16 rays of a packet were given, field by field. */
+typedef struct light_lanes {
+    SF_ALIGNED(float) field[SF_LIGHT_SAMPLED][SF_LANES];
+} light_lanes;
+
+/* What connects vertex first + l to a point of its light piece. */
+static inline void connect(sf_batch *b, const light_lanes *lights, uint32_t first, uint32_t l, float s, float t,
                            bool weigh) {
-    float *const *column = (float *const *)lights->columns;
+    const float (*field)[SF_LANES] = lights->field;
+    uint32_t i = first + l;
     /* On a triangle the lecture's map, on a parallelogram the unit square itself. */
-    float root = sqrtf(s), rectangle = column[SF_LIGHT_RECTANGLE][row];
+    float root = sqrtf(s), rectangle = field[SF_LIGHT_RECTANGLE][l];
     float alpha = rectangle > 0 ? s : root * t, beta = rectangle > 0 ? t : 1 - root;
     float to[3], normal[3], lifted[3];
     for (int c = 0; c < 3; ++c) {
-        float x = column[SF_LIGHT_ORIGIN_X + c][row] + alpha * column[SF_LIGHT_EDGE1_X + c][row] +
-                  beta * column[SF_LIGHT_EDGE2_X + c][row];
-        normal[c] = column[SF_LIGHT_NORMAL_X + c][row];
-        to[c] = x - b->point[c][i];
-        lifted[c] = x;
+        lifted[c] = field[SF_LIGHT_ORIGIN_X + c][l] + alpha * field[SF_LIGHT_EDGE1_X + c][l] +
+                    beta * field[SF_LIGHT_EDGE2_X + c][l];
+        normal[c] = field[SF_LIGHT_NORMAL_X + c][l];
+        to[c] = lifted[c] - b->point[c][i];
     }
     /* Move the light point off its surface too, as the vertex was, so that the ray ends before it. */
     float ax = fabsf(lifted[0]), ay = fabsf(lifted[1]), az = fabsf(lifted[2]);
@@ -287,13 +292,13 @@ static inline void connect(sf_batch *b, const sf_light_table *lights, uint32_t r
     float geometry = sees ? cos_surface * inverse * (cos_light * inverse) : 0.0f;
     if (weigh) {
         float surface_pdf = cos_surface * (1.0f / SF_PI_F) / distance;
-        float light_pdf = column[SF_LIGHT_PDF][row] * square * distance / cos_light;
+        float light_pdf = field[SF_LIGHT_PDF][l] * square * distance / cos_light;
         geometry = sees ? geometry * power_weight(light_pdf, surface_pdf) : 0.0f;
     }
     float sum = 0;
     for (int c = 0; c < 3; ++c) {
         b->to_light[c][i] = to[c] + lift * normal[c];
-        float value = b->throughput[c][i] * column[SF_LIGHT_WEIGHT_R + c][row] * geometry;
+        float value = b->throughput[c][i] * field[SF_LIGHT_WEIGHT_R + c][l] * geometry;
         b->contribution[c][i] = value;
         sum += value;
     }
@@ -306,35 +311,42 @@ static inline uint32_t shadow_bin(uint32_t path, float s, float t) {
     return path / (SF_PATHS / 4) * 16 + (uint32_t)(int)(s * 4) * 4 + (uint32_t)(int)(t * 4);
 }
 
-static void light_single(sf_batch *b, const sf_light_table *lights, float (*u)[SF_PATHS], uint32_t n, bool weigh) {
+static void connect_packet(sf_batch *b, const light_lanes *lights, float (*u)[SF_PATHS], uint32_t first, bool weigh) {
+    SF_ALIGNED(float) s[SF_LANES], t[SF_LANES]; /* apart from what is written below */
+    memcpy(s, u[0] + first, sizeof s);
+    memcpy(t, u[1] + first, sizeof t);
     if (weigh)
-        for (uint32_t i = 0; i < n; ++i) connect(b, lights, 0, i, u[0][i], u[1][i], true);
+        for (uint32_t l = 0; l < SF_LANES; ++l) connect(b, lights, first, l, s[l], t[l], true);
     else
-        for (uint32_t i = 0; i < n; ++i) connect(b, lights, 0, i, u[0][i], u[1][i], false);
+        for (uint32_t l = 0; l < SF_LANES; ++l) connect(b, lights, first, l, s[l], t[l], false);
+    for (uint32_t l = 0; l < SF_LANES; ++l) b->bin[first + l] = shadow_bin(b->path[first + l], s[l], t[l]);
+}
+
+static inline void give_piece(light_lanes *lights, uint32_t l, const float piece[SF_LIGHT_FIELDS]) {
+    for (int f = 0; f < SF_LIGHT_SAMPLED; ++f) lights->field[f][l] = piece[f];
 }
 
 /* Draws a piece from the alias table: the integer part picks a column, the rest decides. */
-static void light_several(sf_batch *b, const sf_light_table *lights, float (*u)[SF_PATHS], uint32_t n, bool weigh) {
-    float pieces = (float)lights->count;
+static inline uint32_t choose_piece(const sf_light_table *lights, float u) {
     uint32_t last = (uint32_t)lights->count - 1;
-    for (uint32_t i = 0; i < n; ++i) {
-        float place = u[2][i] * pieces;
-        uint32_t row = (uint32_t)place;
-        row = row < last ? row : last;
-        row = place - (float)row < lights->columns[SF_LIGHT_KEEP][row] ? row : lights->alias[row];
-        connect(b, lights, row, i, u[0][i], u[1][i], weigh);
-    }
+    float place = u * (float)lights->count;
+    uint32_t row = (uint32_t)place;
+    row = row < last ? row : last;
+    return place - (float)row < lights->pieces[row][SF_LIGHT_KEEP] ? row : lights->alias[row];
 }
 
 static void light(sf_batch *b, const sf_scene *scene, uint32_t count, bool weigh) {
-    bool several = scene->lights.count > 1;
+    const sf_light_table *lights = &scene->lights;
+    bool several = lights->count > 1;
     float (*u)[SF_PATHS] = by_ray(b, count, several ? 3 : 2);
-    uint32_t n = several ? count : whole(count); /* lanes past the end hold no place in a table */
-    if (several)
-        light_several(b, &scene->lights, u, n, weigh);
-    else
-        light_single(b, &scene->lights, u, n, weigh);
-    for (uint32_t i = 0; i < n; ++i) b->bin[i] = shadow_bin(b->path[i], u[0][i], u[1][i]);
+    light_lanes lanes;
+    for (uint32_t l = 0; l < SF_LANES; ++l) give_piece(&lanes, l, lights->pieces[0]);
+    for (uint32_t first = 0; first < count; first += SF_LANES) {
+        if (several) /* lanes past the end hold no place in the table: they keep what they have */
+            for (uint32_t l = 0; l < SF_LANES && first + l < count; ++l)
+                give_piece(&lanes, l, lights->pieces[choose_piece(lights, u[2][first + l])]);
+        connect_packet(b, &lanes, u, first, weigh);
+    }
 }
 
 /* A counting sort. */
@@ -345,6 +357,22 @@ static uint32_t sort_shadow_rays(sf_batch *b, uint32_t count) {
     for (uint32_t i = 0; i < count; ++i)
         if (b->alive[i]) b->order[place[b->bin[i]]++] = i;
     return place[SHADOW_BINS - 1];
+}
+
+/* A ray that was not alive was not traced, and its contribution may be no number. */
+static inline float arriving(const sf_batch *b, int c, uint32_t i) {
+    return b->alive[i] && b->arrives[i] > 0 ? b->contribution[c][i] : 0.0f;
+}
+
+static void add_light(sf_batch *b, uint32_t count) {
+    bool in_place = count == b->block_count * SF_LANES; /* all paths live: path[i] = i */
+    for (int c = 0; c < 3; ++c)
+        if (in_place)
+            for (uint32_t i = 0; i < count; ++i) b->radiance[c][i] += arriving(b, c, i);
+        else {
+            SF_INDEPENDENT
+            for (uint32_t i = 0; i < count; ++i) b->radiance[c][b->path[i]] += arriving(b, c, i);
+        }
 }
 
 /* ---- surface ---- */
@@ -368,39 +396,54 @@ static void surface(sf_batch *b, uint32_t count) {
 /* ---- film ---- */
 
 /* The sum of 16 numbers, halved in a fixed order that vectorizes. */
-static double sum16(double x[SF_LANES]) {
-    for (int half = SF_LANES / 2; half > 0; half /= 2)
-        for (int l = 0; l < half; ++l) x[l] += x[l + half];
-    return x[0];
+static inline double sum16(const double x[SF_LANES]) {
+    SF_ALIGNED(double) a[8];
+    SF_ROLLED
+    for (int l = 0; l < 8; ++l) a[l] = x[l] + x[l + 8];
+    return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]));
+}
+
+/* keep[l] = 1 where the sample was asked for and is finite, else 0. */
+static inline void choose_samples(const sf_batch *b, uint32_t first, uint32_t wanted, float keep[SF_LANES]) {
+    SF_ROLLED
+    for (uint32_t l = 0; l < SF_LANES; ++l) {
+        float sum = b->radiance[0][first + l] + b->radiance[1][first + l] + b->radiance[2][first + l];
+        float asked = (float)(int)(wanted >> l & 1u);
+        keep[l] = fabsf(sum) <= 3.4e38f ? asked : 0.0f;
+    }
+}
+
+static void gather_block(const sf_batch *b, uint32_t block, sf_block_statistics *out) {
+    uint32_t first = block * SF_LANES, wanted = b->blocks[block].active;
+    SF_ALIGNED(float) keep[SF_LANES];
+    SF_ALIGNED(double) value[SF_LANES], squares[SF_LANES] = {0};
+    choose_samples(b, first, wanted, keep);
+    SF_ROLLED
+    for (int l = 0; l < SF_LANES; ++l) value[l] = (double)keep[l];
+    double count = sum16(value), inverse = count > 0 ? 1 / count : 0;
+    for (int c = 0; c < 3; ++c) {
+        const float *radiance = b->radiance[c] + first;
+        SF_ROLLED
+        for (int l = 0; l < SF_LANES; ++l) value[l] = (double)(keep[l] > 0 ? radiance[l] : 0.0f);
+        double mean = out->moments.mean[c] = sum16(value) * inverse;
+        SF_ROLLED
+        for (int l = 0; l < SF_LANES; ++l) {
+            double off = (double)keep[l] * (value[l] - mean);
+            squares[l] += off * off;
+        }
+    }
+    SF_ROLLED
+    for (int l = 0; l < SF_LANES; ++l) value[l] = (double)(keep[l] * b->covered[first + (uint32_t)l]);
+    out->hits = (uint32_t)(int)sum16(value);
+    out->moments.m2 = sum16(squares);
+    out->moments.count = (uint64_t)(int)count;
+    out->moments.nonfinite = (uint64_t)sf_count_bits(wanted) - out->moments.count;
 }
 
 static void gather_statistics(sf_batch *b) {
-    for (uint32_t block = 0; block < b->block_count; ++block) {
-        uint32_t first = block * SF_LANES, wanted = b->blocks[block].active;
-        double keep[SF_LANES], scratch[SF_LANES], squares[SF_LANES] = {0};
-        for (uint32_t l = 0; l < SF_LANES; ++l) {
-            float sum = b->radiance[0][first + l] + b->radiance[1][first + l] + b->radiance[2][first + l];
-            keep[l] = (fabsf(sum) <= 3.4e38f) & (wanted >> l & 1u) ? 1.0 : 0.0; /* finite and asked for */
-            scratch[l] = keep[l];
-        }
-        sf_block_statistics *out = b->statistics + block;
-        double count = sum16(scratch), inverse = count > 0 ? 1 / count : 0;
-        for (int c = 0; c < 3; ++c) {
-            for (uint32_t l = 0; l < SF_LANES; ++l) scratch[l] = keep[l] > 0 ? (double)b->radiance[c][first + l] : 0;
-            double mean = out->moments.mean[c] = sum16(scratch) * inverse;
-            for (uint32_t l = 0; l < SF_LANES; ++l) {
-                double off = keep[l] > 0 ? (double)b->radiance[c][first + l] - mean : 0;
-                squares[l] += off * off;
-            }
-        }
-        for (uint32_t l = 0; l < SF_LANES; ++l) scratch[l] = keep[l] * (double)b->covered[first + l];
-        out->hits = (uint32_t)sum16(scratch);
-        out->moments.m2 = sum16(squares);
-        out->moments.count = (uint64_t)count;
-        out->moments.nonfinite = (uint64_t)sf_count_bits(wanted) - out->moments.count;
-    }
+    for (uint32_t block = 0; block < b->block_count; ++block) gather_block(b, block, b->statistics + block);
 }
 
 const sf_shade_kernels SF_AT_LEVEL(sf_shade_kernels) = {
     camera, first_radiance, later_radiance, first_vertex,     later_vertex,      compact,
-    light,  sort_shadow_rays, surface,      gather_statistics};
+    light,  sort_shadow_rays, add_light,      surface,          gather_statistics};

@@ -36,6 +36,8 @@ typedef struct sf_shade_kernels {
 
     /* Lists the rays that have a contribution in `order`, bin by bin. Returns how many. */
     uint32_t (*sort_shadow_rays)(sf_batch *batch, uint32_t count);
+    /* Adds the contributions that arrive to the radiance of their paths. */
+    void (*add_light)(sf_batch *batch, uint32_t count);
 
     /* New rays off the surfaces, from coordinate[0 .. 1], by the cosine. */
     void (*surface)(sf_batch *batch, uint32_t count);

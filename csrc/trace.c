@@ -72,11 +72,7 @@ static void trace_shadow_packet(sf_batch *b, const sf_scene *scene, const uint32
     for (int l = 0; l < SF_LANES; ++l) rays.tfar[l] = 1;
     set_valid(valid, lanes < SF_LANES ? (1u << lanes) - 1 : 0xffffu);
     sf_embree_occluded16(scene->embree, valid, &rays, SF_INCOHERENT);
-    for (uint32_t l = 0; l < lanes; ++l) {
-        uint32_t i = order[l], path = b->path[i];
-        float arrives = rays.tfar[l] > 0 ? 1.0f : 0.0f;
-        for (int c = 0; c < 3; ++c) b->radiance[c][path] += arrives * b->contribution[c][i];
-    }
+    for (uint32_t l = 0; l < lanes; ++l) b->arrives[order[l]] = rays.tfar[l] > 0 ? 1.0f : 0.0f;
 }
 
 void sf_trace_shadow(sf_batch *b, const sf_scene *scene, uint32_t count) {

@@ -177,14 +177,14 @@ static void test_lights_are_drawn_in_proportion_to_area_times_radiance(void **st
     const sf_light_table *lights = &scene->lights;
     assert_int_equal(lights->count, 5);
     for (size_t i = 0; i < 5; ++i) {
-        double keep = (double)lights->columns[SF_LIGHT_KEEP][i];
+        double keep = (double)lights->pieces[i][SF_LIGHT_KEEP];
         drawn[i] += keep / 5;
         drawn[lights->alias[i]] += (1 - keep) / 5;
     }
     for (int i = 0; i < 5; ++i) {
         assert_true(fabs(drawn[i] - power[i] / total) < 1e-6); /* float probabilities, five terms */
         double area = 0.36 * (i + 1) * (i + 1);
-        assert_true(fabs((double)lights->columns[SF_LIGHT_PDF][i] * area / drawn[i] - 1) < 1e-5);
+        assert_true(fabs((double)lights->pieces[i][SF_LIGHT_PDF] * area / drawn[i] - 1) < 1e-5);
     }
     sf_scene_destroy(scene);
 }
