@@ -7,16 +7,17 @@ PYTHON ?= python3
 
 build_packages = build-essential cmake ninja-build python3-dev python3-venv libembree-dev
 demo_packages = $(build_packages) assimp-testmodels
+bench_packages = $(demo_packages) libllvm19
 test_packages = $(demo_packages) libcmocka-dev libopenimageio-dev pkg-config
 
 sources = CMakeLists.txt pyproject.toml $(shell find cmake csrc python -type f -not -name '*.pyc')
 venv = .venv/bin/python
 
-# Mitsuba, for bench, in an environment of its own that sees this package.
+# Mitsuba, for bench, in an environment of its own that sees this package, with an LLVM it accepts.
 MITSUBA_PYTHON = build/mitsuba/bin/python
-with_mitsuba = PYTHONPATH=$$($(venv) -c 'import sysconfig; print(sysconfig.get_path("platlib"))') $(MITSUBA_PYTHON)
+with_mitsuba = DRJIT_LIBLLVM_PATH=$$(ls /usr/lib/*/libLLVM.so.19* 2>/dev/null | head -n 1) PYTHONPATH=$$($(venv) -c 'import sysconfig; print(sysconfig.get_path("platlib"))') $(MITSUBA_PYTHON)
 
-.PHONY: help demo test sanitize lint bench clean packages-demo packages-test build-c
+.PHONY: help demo test sanitize lint bench clean packages-demo packages-test packages-bench build-c
 .DELETE_ON_ERROR:
 .NOTPARALLEL: # packages come first; CMake and pip use all processors themselves
 
@@ -51,7 +52,7 @@ lint: packages-test .venv/.lint
 	cmake --build build/lint
 	scripts/check-format.sh
 
-bench: packages-demo .venv/.demo build/reference/penumbra_256.npy build/reference/cornell_256.npy
+bench: packages-bench .venv/.demo build/reference/penumbra_256.npy build/reference/cornell_256.npy
 	$(with_mitsuba) bench/render.py
 	$(venv) bench/startup.py
 
@@ -60,6 +61,9 @@ clean:
 
 packages-demo:
 	@scripts/install-packages.sh $(demo_packages)
+
+packages-bench:
+	@scripts/install-packages.sh $(bench_packages)
 
 packages-test:
 	@scripts/install-packages.sh $(test_packages)
@@ -96,5 +100,5 @@ $(MITSUBA_PYTHON):
 	$(PYTHON) -m venv build/mitsuba
 	$(MITSUBA_PYTHON) -m pip install -q mitsuba
 
-build/reference/%_256.npy: | .venv/.demo $(MITSUBA_PYTHON)
+build/reference/%_256.npy: | packages-bench .venv/.demo $(MITSUBA_PYTHON)
 	$(with_mitsuba) bench/reference.py $*
