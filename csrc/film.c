@@ -229,6 +229,7 @@ static void describe_options(sf_film *film, const sf_render_options *o) {
     describe(film, "height", "%" PRIu32, o->height);
     describe(film, "crop", "%" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32, o->crop[0], o->crop[1], o->crop[2], o->crop[3]);
     describe(film, "spp", "%" PRIu32, o->spp);
+    describe(film, "start", "%" PRIu32, o->start);
     describe(film, "relative_tolerance", "%.17g", o->relative_tolerance);
     describe(film, "absolute_tolerance", "%.17g", o->absolute_tolerance);
     describe(film, "confidence", "%.17g", o->confidence);

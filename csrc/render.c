@@ -258,7 +258,7 @@ static void fix_tolerance(render *r) {
 static uint32_t next_target(const render *r, uint32_t n) {
     const sf_render_options *o = &r->options;
     bool adaptive = r->options.relative_tolerance > 0 || r->options.absolute_tolerance > 0;
-    uint32_t most = o->spp ? o->spp : adaptive ? o->max_spp : SF_MAX_SPP;
+    uint32_t most = o->spp ? o->start + o->spp : adaptive ? o->max_spp : SF_MAX_SPP;
     uint32_t step = n / 4 / SF_LANES * SF_LANES;
     step = step < SF_LANES ? SF_LANES : step > 256 ? 256 : step;
     /* Without a clock to watch, nothing is decided before min_spp or during a fixed count. */
@@ -294,6 +294,7 @@ static uint64_t count_active(const render *r) {
 static void run_rounds(render *r) {
     sf_film_summary *summary = &r->film->summary;
     uint64_t region = count_active(r), active = region;
+    r->to = r->options.start;
     summary->tolerance = -1;
     while (active > 0) {
         r->from = r->to;

@@ -63,6 +63,10 @@ static sf_status check_budget(sf_render_options *o, sf_error *error) {
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "confidence is %g; it must be in (0, 1)", o->confidence);
     if (!(o->seconds >= 0 && o->seconds <= 1e9))
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "seconds is %g; it must be in (0, 1e9], or 0 for no limit", o->seconds);
+    if (o->start && (!o->spp || o->start > SF_MAX_SPP - o->spp))
+        return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                       "start is %u and spp is %u; a start goes with a fixed spp, and start + spp is at most %u", o->start,
+                       o->spp, SF_MAX_SPP);
     bool tolerance = o->relative_tolerance > 0 || o->absolute_tolerance > 0;
     if (o->spp && tolerance)
         return sf_fail(error, SF_STATUS_INVALID_VALUE,

@@ -141,7 +141,7 @@ sf_pattern find_pattern(const std::string &name) {
 }
 
 film_handle *render(const scene_handle &scene, uint32_t width, uint32_t height, std::array<uint32_t, 4> crop,
-                    uint32_t spp, double relative_tolerance, double absolute_tolerance, double confidence,
+                    uint32_t spp, uint32_t start, double relative_tolerance, double absolute_tolerance, double confidence,
                     uint32_t min_spp, uint32_t max_spp, double seconds, const std::string &pattern,
                     const std::string &pixel_filter, const std::string &stop, const std::string &seeds, uint64_t seed,
                     uint32_t threads, uint32_t tile_size, nb::object observer) {
@@ -151,6 +151,7 @@ film_handle *render(const scene_handle &scene, uint32_t width, uint32_t height, 
     options.height = height;
     for (int k = 0; k < 4; ++k) options.crop[k] = crop[k];
     options.spp = spp;
+    options.start = start;
     options.relative_tolerance = relative_tolerance;
     options.absolute_tolerance = absolute_tolerance;
     options.confidence = confidence;
@@ -204,7 +205,7 @@ void bind_render(nb::module_ &m) {
     });
 
     m.def("render", &render, nb::rv_policy::take_ownership, "scene"_a, nb::kw_only(), "width"_a, "height"_a, "crop"_a,
-          "spp"_a, "relative_tolerance"_a, "absolute_tolerance"_a, "confidence"_a, "min_spp"_a, "max_spp"_a,
+          "spp"_a, "start"_a, "relative_tolerance"_a, "absolute_tolerance"_a, "confidence"_a, "min_spp"_a, "max_spp"_a,
           "seconds"_a, "pattern"_a, "pixel_filter"_a, "stop"_a, "seeds"_a, "seed"_a, "threads"_a, "tile_size"_a,
           "progress"_a.none());
 }

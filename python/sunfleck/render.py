@@ -283,6 +283,7 @@ def render(
     height: int = 512,
     *,
     spp: int | None = None,
+    start: int = 0,
     tolerance: float | Tolerance | None = None,
     confidence: float = 0.95,
     min_spp: int = 32,
@@ -307,6 +308,8 @@ def render(
         Of the full frame, in pixels, 1 to 65,536.
     spp : int, optional
         A fixed count of samples a pixel; not with ``tolerance``.
+    start : int
+        Index of the first of ``spp`` samples: a picture's samples can be had in parts.
     tolerance : float or Tolerance, optional
         A pixel is done when its half-width is within it. A plain number is relative to the
         level: the mean of (R+G+B)/3 over the frame after ``min_spp``. With nothing given: 0.01.
@@ -375,6 +378,7 @@ def render(
         "height": integer("height", height, bits=32),
         "crop": _crop(crop),
         "spp": _count("spp", spp),
+        "start": integer("start", start, bits=32),
         "relative_tolerance": relative,
         "absolute_tolerance": absolute,
         "confidence": number("confidence", confidence),

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sunfleck.scene import Camera, Mesh, Scene
 
-__all__ = ["SCENES", "cornell", "defocus", "penumbra"]
+__all__ = ["SCENES", "cornell", "defocus", "keyhole", "penumbra"]
 
 Arrays = tuple[NDArray[np.float64], NDArray[np.uint32]]
 
@@ -179,4 +179,44 @@ def cornell() -> Scene:
     return Scene(meshes, camera, max_bounces=5)
 
 
-SCENES: dict[str, Callable[[], Scene]] = {"penumbra": penumbra, "defocus": defocus, "cornell": cornell}
+def keyhole() -> Scene:
+    """A room that gets its light through a small gap in a wall: most pixels see light rarely.
+
+    z is up. The room spans 4 x 4 x 2.5; behind a gap of 0.3 x 0.6 in the wall at x = 2 lies a
+    chamber with a lamp of 0.8 x 0.8 and radiance 60 under its ceiling. All albedo 0.7; 5 bounces.
+
+    Examples
+    --------
+    >>> import sunfleck as sf
+    >>> sf.scenes.keyhole().info.light_count
+    1
+    """
+    x, y, z = np.eye(3)
+
+    def wall(y0: float, y1: float, z0: float, z1: float) -> Mesh:
+        """A part of the wall with the gap, which faces the room."""
+        return Mesh(*_rectangle(-(y1 - y0) / 2 * y, (z1 - z0) / 2 * z, (2, (y0 + y1) / 2, (z0 + z1) / 2)), _GREY)
+
+    meshes = [
+        Mesh(*_rectangle(3 * x, 2 * y, (1, 0, 0)), _GREY),  # floor, of the room and the chamber
+        Mesh(*_rectangle(3 * x, -2 * y, (1, 0, 2.5)), _GREY),  # ceiling
+        Mesh(*_rectangle(3 * x, 1.25 * z, (1, 2, 1.25)), _GREY),
+        Mesh(*_rectangle(-3 * x, 1.25 * z, (1, -2, 1.25)), _GREY),
+        Mesh(*_rectangle(2 * y, 1.25 * z, (-2, 0, 1.25)), _GREY),
+        Mesh(*_rectangle(-2 * y, 1.25 * z, (4, 0, 1.25)), _GREY),
+        wall(-2, -0.15, 0, 2.5),
+        wall(0.15, 2, 0, 2.5),
+        wall(-0.15, 0.15, 0, 1.0),
+        wall(-0.15, 0.15, 1.6, 2.5),
+        Mesh(*_box((-0.6, -1.2, 0), (0.2, -0.5, 0.8)), _GREY),
+        Mesh(*_rectangle(0.4 * x, -0.4 * y, (3, 0, 2.45)), _BLACK, (60, 60, 60)),
+    ]
+    return Scene(meshes, Camera((-1.9, 1.7, 1.5), (0.6, -0.5, 0.7), up=(0, 0, 1), vertical_fov=70), max_bounces=5)
+
+
+SCENES: dict[str, Callable[[], Scene]] = {
+    "penumbra": penumbra,
+    "defocus": defocus,
+    "cornell": cornell,
+    "keyhole": keyhole,
+}

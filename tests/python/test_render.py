@@ -28,6 +28,23 @@ def assert_same_film(a: sf.Image, b: sf.Image) -> None:
 # ---- what an image holds ----
 
 
+@pytest.mark.parametrize("pattern", ["random", "halton", "sobol"])
+def test_samples_can_be_had_in_parts(penumbra: sf.Scene, pattern: str) -> None:
+    whole = sf.render(penumbra, 40, 24, spp=48, pattern=pattern)
+    parts = [sf.render(penumbra, 40, 24, spp=n, start=k, pattern=pattern) for k, n in ((0, 20), (20, 28))]
+    mean = (20 * parts[0].color.astype(float) + 28 * parts[1].color.astype(float)) / 48
+    # Float results near 1: each is within half an ulp, 2^-25 relative, of its double.
+    assert np.abs(mean - whole.color).max() < 4 * 2.0**-25 * whole.color.max()
+    assert not np.array_equal(parts[0].color, whole.color)
+
+
+def test_a_start_goes_with_a_fixed_count(penumbra: sf.Scene) -> None:
+    with pytest.raises(ValueError, match="start is 16"):
+        sf.render(penumbra, 8, 8, start=16, tolerance=0.1)
+    with pytest.raises(ValueError, match="start is 4294967295"):
+        sf.render(penumbra, 8, 8, start=2**32 - 1, spp=1)
+
+
 def test_arrays_have_the_stated_shapes_and_dtypes(picture: sf.Image) -> None:
     assert (picture.width, picture.height) == (40, 24)
     assert picture.color.shape == (24, 40, 3)

@@ -140,3 +140,15 @@ def test_penumbra_is_as_bright_as_its_light_makes_it(penumbra: sf.Scene) -> None
     # The pixel spans 1.6 % of the distance; brightness varies by less than that across it, and
     # linear variation cancels. 256 stratified samples of a smooth integrand: well below 1 %.
     assert image.color[y, x] == pytest.approx(0.7 / np.pi * irradiance, rel=0.01)
+
+
+def test_keyhole_is_a_closed_room_lit_through_the_gap_alone() -> None:
+    scene = sf.scenes.keyhole()
+    assert scene.info.light_count == 1
+    image = sf.render(scene, 32, 32, spp=64)
+    assert image.alpha.min() == 1  # no ray leaves
+    # With direct light alone, few pixels see any: those on the streak, and what the gap shows.
+    direct = sf.Scene(scene.meshes, scene.camera, max_bounces=1)
+    lit = sf.render(direct, 32, 32, spp=64).color.mean(axis=2) > 0
+    assert 0.01 < lit.mean() < 0.2
+    assert (image.color.mean(axis=2) > 0).mean() > 0.99

@@ -86,6 +86,9 @@ typedef struct sf_render_options {
                                 its pixels are the full frame's, bit for bit, at fixed spp (and
                                 adaptively with an absolute tolerance) */
     uint32_t spp;            /* fixed samples a pixel, 0 .. SF_MAX_SPP; default 0: adaptive */
+    uint32_t start;          /* index of every pixel's first sample, with spp only; start + spp at
+                                most SF_MAX_SPP; default 0. Renders of [0, a) and [a, b) hold the
+                                samples of one of [0, b), where the pattern has no total to know */
     double relative_tolerance; /* of the level: the mean over the frame (the crop) of (R+G+B)/3
                                 after min_spp; >= 0; default 0 */
     double absolute_tolerance; /* linear radiance, >= 0; default 0. A pixel is done when its
