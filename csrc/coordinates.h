@@ -22,8 +22,9 @@ typedef struct sf_block {
     uint64_t key;  /* randomizes the block: of its pixel, or drawn from the thread's stream */
     uint32_t base; /* a multiple of 16 */
     uint32_t active;
-    uint32_t x, y;  /* of the full frame */
-    uint32_t pixel; /* in the film */
+    uint32_t x, y;   /* of the full frame */
+    uint32_t pixel;  /* in the film */
+    uint32_t number; /* among the pixel's blocks */
 } sf_block;
 
 /* Where a group of dimensions comes from. */

@@ -11,6 +11,7 @@
 
 #include "error.h"
 #include "platform.h"
+#include "stopping.h"
 
 #define MAX_ATTRIBUTES 40
 #define TEXT_SIZE 96
@@ -20,7 +21,10 @@ const char *sf_pixel_filter_name(sf_pixel_filter filter) {
     return (unsigned)filter < 3 ? names[filter] : NULL;
 }
 
-const char *sf_stop_rule_name(sf_stop_rule rule) { return rule == SF_STOP_STANDARD_ERROR ? "standard-error" : NULL; }
+const char *sf_stop_rule_name(sf_stop_rule rule) {
+    static const char *const names[] = {"standard-error", "replicates", "dyadic"};
+    return (unsigned)rule < 3 ? names[rule] : NULL;
+}
 
 const char *sf_seed_policy_name(sf_seed_policy policy) {
     static const char *const names[] = {"pixel", "thread", "shared"};
@@ -46,11 +50,13 @@ static void *take(char **memory, size_t bytes) {
 static sf_status allocate_arrays(sf_film *film, sf_error *error) {
     size_t traced = (size_t)film->width * film->height, pixels = (size_t)film->crop_width * film->crop_height;
     size_t rows = film->crop_height * sizeof *film->rows;
-    film->memory_bytes = traced * sizeof *film->pixels + rows + pixels * (6 * 4 + 1) + 7 * SF_ALIGNMENT;
+    size_t pools = sf_stop_pool_count(film) * sizeof *film->decay;
+    film->memory_bytes = traced * sizeof *film->pixels + pools + rows + pixels * (6 * 4 + 1) + 8 * SF_ALIGNMENT;
     film->memory = sf_pages_alloc(film->memory_bytes);
     if (!film->memory) return sf_fail_memory(error, "the film", film->memory_bytes);
     char *memory = film->memory;
     film->pixels = take(&memory, traced * sizeof *film->pixels);
+    film->decay = take(&memory, pools);
     film->rows = take(&memory, rows);
     film->color = take(&memory, pixels * 3 * sizeof *film->color);
     film->alpha = take(&memory, pixels * sizeof *film->alpha);
@@ -235,6 +241,7 @@ static void describe_options(sf_film *film, const sf_render_options *o) {
     describe(film, "confidence", "%.17g", o->confidence);
     describe(film, "min_spp", "%" PRIu32, o->min_spp);
     describe(film, "max_spp", "%" PRIu32, o->max_spp);
+    describe(film, "samples", "%" PRIu64, o->samples);
     describe(film, "seconds", "%.17g", o->seconds);
     describe(film, "pattern", "%s", sf_pattern_name(o->pattern));
     describe(film, "pixel_filter", "%s", sf_pixel_filter_name(o->pixel_filter));

@@ -14,13 +14,27 @@ typedef struct sf_block_statistics {
     uint32_t hits;             /* finite samples whose camera ray hit a surface */
 } sf_block_statistics;
 
-/* A pixel's running statistics. */
+/* What the rule "dyadic" keeps of a pixel; see stopping.h. Level 0 is the coarsest. */
+typedef struct sf_dyadic {
+    double unit;       /* sum over the blocks of the unit at work */
+    double pending[4]; /* means of left halves that wait for their right ones */
+    float squares[4];  /* sums of ((A - B) / 2)^2 over the pairs of a level */
+} sf_dyadic;
+
+#define SF_REPLICATES 8 /* of the rule "replicates" */
+
+/* A pixel's running statistics: 120 bytes, whatever the sample count. */
 typedef struct sf_film_pixel {
     sf_vector_moments moments;
+    union {
+        sf_dyadic dyadic;
+        double replicates[SF_REPLICATES - 1]; /* sums of block means; the last follows from the mean */
+    } evidence;
     uint32_t hits;
     float half_width;
+    float variance; /* of the mean, at the last look */
+    uint8_t look;   /* that was at 16 * 2^look samples; 0: none yet */
     uint8_t reason; /* sf_stop_reason, once it has stopped */
-    uint8_t stopped;
 } sf_film_pixel;
 
 /* What a row of the crop adds to the summary; rows are filled by any thread, and summed in order. */
@@ -38,6 +52,7 @@ struct sf_film {
     void *memory;                           /* that the arrays below lie in */
     size_t memory_bytes;
     sf_film_pixel *pixels;                  /* width * height */
+    float *decay;                           /* of variance, by pooling cell; see stopping.h */
     sf_film_row *rows;                      /* crop_height */
     float *color;                           /* of the crop, 3 * crop_width * crop_height */
     float *alpha;

@@ -3,12 +3,18 @@
 
 /* The render: rounds over tiles, and the decisions between them.
  *
- * A round brings every pixel that is still active from `from` to `to` samples; threads take tiles
- * from a counter. Decisions fall between rounds only, from each pixel's own statistics and the
- * frame's level, so that no bit of the film depends on threads or tiles. */
+ * A round brings every active pixel from `from` to `to` samples; threads take tiles from a
+ * counter. One or more rounds make a lap, which ends at a count where the stopping rule looks.
+ * Decisions fall between laps only, from the statistics of all pixels and the frame's level, so
+ * that no bit of the film depends on threads or tiles.
+ *
+ * With a tolerance, or a fixed count, all open pixels move on together until they are closed.
+ * With a budget alone a falling target takes the tolerance's place: the pixels beyond it are
+ * brought on, the least sampled first, until none is, and the target falls. */
 
 #include "sunfleck/render.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
@@ -17,11 +23,12 @@
 #include "film.h"
 #include "pool.h"
 #include "render_options.h"
+#include "stopping.h"
 #include "sunfleck/rng.h"
 
 #define CELL_PIXELS (SF_CELL_SIZE * SF_CELL_SIZE)
 
-enum { RUNNING = 0, OUT_OF_TIME, INTERRUPTED };
+enum { RUNNING = 0, OUT_OF_TIME, INTERRUPTED, SPENT };
 
 /* What belongs to one thread, on cache lines of its own. */
 typedef struct render_worker {
@@ -36,7 +43,9 @@ typedef struct render {
     sf_film *film;
     sf_pool *pool;
     render_worker *workers;
-    uint64_t *active; /* by cell of the film: bit m is pixel m of the cell in Morton order */
+    uint64_t *open;   /* pixels that are not done, by cell of the film: bit m is pixel m of the cell in
+                         Morton order */
+    uint64_t *active; /* of these, the ones that the lap brings on */
     uint32_t cell_columns, cell_rows;
     uint32_t tile_columns, tile_rows;
     uint32_t tile_x0, tile_y0; /* of the first tile, in cells of the frame */
@@ -44,6 +53,12 @@ typedef struct render {
     uint32_t *tiles;           /* those with active pixels */
     size_t tile_count;
     uint32_t from, to; /* the round's sample counts */
+    uint32_t look;     /* where the lap ends, unless the render does */
+    sf_lap lap;
+    double target;     /* of a budget: half-widths beyond it are to be lowered */
+    double *worst;     /* by tile: scratch of choosing pixels */
+    uint32_t *least;
+    size_t *chosen;
     bool level_fixed;
     double z;          /* standard errors in a half-width */
     double start, deadline;
@@ -94,9 +109,34 @@ static sf_camera_frame frame_camera(const sf_camera *camera, uint32_t width, uin
 static uint32_t morton_x(uint32_t m) { return (m & 1u) | (m >> 1 & 2u) | (m >> 2 & 4u); }
 static uint32_t morton_y(uint32_t m) { return morton_x(m >> 1); }
 
+static uint32_t cell_x(const render *r, uint32_t cell, uint32_t m) {
+    return cell % r->cell_columns * SF_CELL_SIZE + morton_x(m);
+}
+static uint32_t cell_y(const render *r, uint32_t cell, uint32_t m) {
+    return cell / r->cell_columns * SF_CELL_SIZE + morton_y(m);
+}
 static sf_film_pixel *cell_pixel(const render *r, uint32_t cell, uint32_t m) {
-    uint32_t x = cell % r->cell_columns * SF_CELL_SIZE + morton_x(m), y = cell / r->cell_columns * SF_CELL_SIZE + morton_y(m);
-    return r->film->pixels + (size_t)y * r->film->width + x;
+    return r->film->pixels + (size_t)cell_y(r, cell, m) * r->film->width + cell_x(r, cell, m);
+}
+
+static uint64_t taken(const sf_film_pixel *pixel) { return pixel->moments.count + pixel->moments.nonfinite; }
+
+/* The most samples that a pixel may take. */
+static uint32_t most_samples(const render *r) {
+    const sf_render_options *o = &r->options;
+    bool adaptive = o->relative_tolerance > 0 || o->absolute_tolerance > 0;
+    return o->spp ? o->start + o->spp : adaptive ? o->max_spp : SF_MAX_SPP;
+}
+
+/* Adds the block to its pixel's statistics, and to what the stopping rule keeps. */
+static void add_block(render *r, const sf_block *block, const sf_block_statistics *statistics) {
+    sf_film_pixel *pixel = r->film->pixels + block->pixel;
+    sf_film_add(pixel, statistics);
+    const double *means = statistics->moments.mean;
+    double mean = (means[0] + means[1] + means[2]) / 3;
+    if (r->lap.levels) sf_dyadic_add(&pixel->evidence.dyadic, mean, block->number, r->lap);
+    if (r->options.stop == SF_STOP_REPLICATES && block->number % SF_REPLICATES < SF_REPLICATES - 1)
+        pixel->evidence.replicates[block->number % SF_REPLICATES] += mean;
 }
 
 /* Runs the blocks gathered so far and adds them to the film, in their order. */
@@ -106,7 +146,7 @@ static void flush_batch(render *r, render_worker *worker) {
     sf_batch_run(batch, &r->context);
     size_t samples = 0;
     for (uint32_t i = 0; i < batch->block_count; ++i) {
-        sf_film_add(r->film->pixels + batch->blocks[i].pixel, batch->statistics + i);
+        add_block(r, batch->blocks + i, batch->statistics + i);
         samples += sf_count_bits(batch->blocks[i].active);
     }
     batch->block_count = 0;
@@ -116,21 +156,26 @@ static void flush_batch(render *r, render_worker *worker) {
 
 /* The block of pixel m that starts at sample `n`. */
 static sf_block make_block(const render *r, uint32_t cell, uint32_t m, uint64_t key, uint32_t n) {
-    uint32_t x = cell % r->cell_columns * SF_CELL_SIZE + morton_x(m), y = cell / r->cell_columns * SF_CELL_SIZE + morton_y(m);
+    uint32_t x = cell_x(r, cell, m), y = cell_y(r, cell, m);
     uint32_t base = n / SF_LANES * SF_LANES, end = r->to - base < SF_LANES ? r->to - base : SF_LANES;
-    return (sf_block){.key = key,
+    sf_block block = {.key = key,
                       .base = base,
                       .active = ((1u << end) - 1) & ~((1u << (n - base)) - 1),
                       .x = x + r->film->x0,
                       .y = y + r->film->y0,
-                      .pixel = y * r->film->width + x};
+                      .pixel = y * r->film->width + x,
+                      .number = base / SF_LANES};
+    if (r->options.stop == SF_STOP_REPLICATES) { /* replicates take turns by the block */
+        block.key = sf_hash64(key, block.number % SF_REPLICATES + 1);
+        block.base = block.number / SF_REPLICATES * SF_LANES;
+    }
+    return block;
 }
 
 static void choose_keys(render *r, render_worker *worker, uint32_t cell, uint64_t active, uint64_t keys[CELL_PIXELS]) {
     for (uint32_t m = 0; m < CELL_PIXELS; ++m) {
         if (!(active >> m & 1u)) continue;
-        uint64_t x = cell % r->cell_columns * SF_CELL_SIZE + morton_x(m) + r->film->x0;
-        uint64_t y = cell / r->cell_columns * SF_CELL_SIZE + morton_y(m) + r->film->y0;
+        uint64_t x = cell_x(r, cell, m) + r->film->x0, y = cell_y(r, cell, m) + r->film->y0;
         keys[m] = r->options.seeds == SF_SEEDS_PIXEL ? sf_hash64(r->options.seed, y << 32 | x)
                                                      : sf_rng_next_raw(&worker->stream);
     }
@@ -141,6 +186,9 @@ static void sample_cell(render *r, render_worker *worker, uint32_t cell) {
     uint64_t active = r->active[cell], keys[CELL_PIXELS];
     sf_batch *batch = &worker->batch;
     choose_keys(r, worker, cell, active, keys);
+    bool lap_begins = r->lap.levels && r->from && sf_stop_is_look(&r->options, r->from);
+    for (uint32_t m = 0; lap_begins && m < CELL_PIXELS; ++m)
+        if (active >> m & 1u) sf_dyadic_begin(cell_pixel(r, cell, m));
     for (uint32_t n = r->from; n < r->to; n = n / SF_LANES * SF_LANES + SF_LANES)
         for (uint32_t m = 0; m < CELL_PIXELS; ++m) {
             if (!(active >> m & 1u)) continue;
@@ -170,27 +218,33 @@ static cell_range tile_range(const render *r, uint32_t tile) {
                         .y1 = at_most(top + r->tile_cells - y0, r->cell_rows)};
 }
 
-/* Calls `visit` for every cell of the tile that has active pixels. */
-static void for_each_cell(render *r, unsigned worker, size_t item, void (*visit)(render *, render_worker *, uint32_t)) {
-    cell_range range = tile_range(r, r->tiles[item]);
+/* Calls `visit` for every cell of the tile that has a pixel in `cells`, r->active or r->open. */
+static void for_each_cell(render *r, unsigned worker, uint32_t tile, const uint64_t *cells,
+                          void (*visit)(render *, render_worker *, uint32_t)) {
+    cell_range range = tile_range(r, tile);
     for (uint32_t y = range.y0; y < range.y1; ++y)
         for (uint32_t x = range.x0; x < range.x1; ++x)
-            if (r->active[(size_t)y * r->cell_columns + x])
+            if (cells[(size_t)y * r->cell_columns + x])
                 visit(r, r->workers + worker, y * r->cell_columns + x);
 }
 
 static void sample_tile(void *user, unsigned worker, size_t item) {
     render *r = user;
-    if (sf_atomic_load(&r->state) == RUNNING) for_each_cell(r, worker, item, sample_cell);
+    if (sf_atomic_load(&r->state) == RUNNING) for_each_cell(r, worker, r->tiles[item], r->active, sample_cell);
 }
 
 /* ---- progress ---- */
 
+static uint64_t samples_traced(const render *r) {
+    uint64_t samples = 0;
+    for (uint32_t i = 0; i < r->options.threads; ++i) samples += sf_atomic_load(&r->workers[i].samples);
+    return samples;
+}
+
 static void report(render *r, bool round_finished) {
     if (!r->options.progress) return;
     sf_progress *p = &r->progress;
-    p->samples = 0;
-    for (uint32_t i = 0; i < r->options.threads; ++i) p->samples += sf_atomic_load(&r->workers[i].samples);
+    p->samples = samples_traced(r);
     p->seconds = sf_seconds_now() - r->start;
     p->round_finished = round_finished;
     if (r->options.progress(p, r->options.progress_user) != 0) sf_atomic_store(&r->state, INTERRUPTED);
@@ -200,33 +254,46 @@ static void wake(void *user) { report(user, false); }
 
 /* ---- decisions ---- */
 
+static void look_at_pool(void *user, unsigned worker, size_t item) {
+    (void)worker;
+    render *r = user;
+    sf_stop_look_at_pool(r->film, (uint32_t)item, r->look, r->lap);
+}
+
+/* Why a pixel that is not met is closed. */
+static sf_stop_reason unmet_reason(const render *r, bool full, size_t state) {
+    if (full) return r->options.spp ? SF_STOP_FIXED : SF_STOP_MAX_SAMPLES;
+    if (state == OUT_OF_TIME) return SF_STOP_OUT_OF_TIME;
+    return state == INTERRUPTED ? SF_STOP_INTERRUPTED : SF_STOP_MAX_SAMPLES; /* a budget of samples is spent */
+}
+
 /* Whether the pixel is done, and why. */
-static bool decide_pixel(const render *r, sf_film_pixel *pixel, size_t state) {
-    uint64_t taken = pixel->moments.count + pixel->moments.nonfinite;
+static bool decide_pixel(const render *r, uint32_t x, uint32_t y, size_t state) {
+    sf_film_pixel *pixel = r->film->pixels + (size_t)y * r->film->width + x;
     const sf_render_options *o = &r->options;
     const sf_film_summary *summary = &r->film->summary;
-    pixel->half_width = sf_film_half_width(pixel, r->z);
-    bool met = !o->spp && summary->tolerance >= 0 && taken >= o->min_spp && (double)pixel->half_width <= summary->tolerance;
-    bool full = taken >= (o->spp ? o->spp : summary->tolerance >= 0 ? o->max_spp : SF_MAX_SPP);
-    pixel->reason = (uint8_t)(met                     ? SF_STOP_MET
-                              : full && o->spp        ? SF_STOP_FIXED
-                              : full                  ? SF_STOP_MAX_SAMPLES
-                              : state == OUT_OF_TIME  ? SF_STOP_OUT_OF_TIME
-                                                      : SF_STOP_INTERRUPTED);
-    bool done = met || full || state != RUNNING;
-    if (done && pixel->moments.nonfinite) pixel->reason = SF_STOP_SUSPICIOUS;
-    return done;
+    bool full = taken(pixel) + o->start >= most_samples(r);
+    pixel->half_width = sf_stop_half_width(r->film, o, x, y, r->z);
+    bool met = !o->spp && summary->tolerance >= 0 && taken(pixel) >= o->min_spp &&
+               (double)pixel->half_width <= summary->tolerance;
+    if (!met && !full && state == RUNNING) return false;
+    sf_stop_reason reason = met ? SF_STOP_MET : unmet_reason(r, full, state);
+    pixel->reason = (uint8_t)(pixel->moments.nonfinite ? SF_STOP_SUSPICIOUS : reason);
+    return true;
 }
 
 static void decide_cell(render *r, render_worker *worker, uint32_t cell) {
     (void)worker;
     size_t state = sf_atomic_load(&r->state);
     for (uint32_t m = 0; m < CELL_PIXELS; ++m)
-        if (r->active[cell] >> m & 1u && decide_pixel(r, cell_pixel(r, cell, m), state))
-            r->active[cell] &= ~(UINT64_C(1) << m);
+        if (r->active[cell] >> m & 1u && decide_pixel(r, cell_x(r, cell, m), cell_y(r, cell, m), state))
+            r->open[cell] &= ~(UINT64_C(1) << m);
 }
 
-static void decide_tile(void *user, unsigned worker, size_t item) { for_each_cell(user, worker, item, decide_cell); }
+static void decide_tile(void *user, unsigned worker, size_t item) {
+    render *r = user;
+    for_each_cell(r, worker, r->tiles[item], r->active, decide_cell);
+}
 
 static void sum_row(void *user, unsigned worker, size_t item) {
     (void)worker;
@@ -247,75 +314,204 @@ static void resolve_row(void *user, unsigned worker, size_t item) {
 static void fix_tolerance(render *r) {
     const sf_render_options *o = &r->options;
     sf_film_summary *summary = &r->film->summary;
-    if (r->to < o->min_spp || r->level_fixed) return;
+    if ((r->to < o->min_spp && r->to < most_samples(r)) || r->level_fixed) return;
     r->level_fixed = true;
     measure_level(r);
     if (o->relative_tolerance > 0 || o->absolute_tolerance > 0)
         summary->tolerance = fmax(o->absolute_tolerance, o->relative_tolerance * summary->level);
 }
 
-/* The next round's sample count: min_spp, then a quarter more at a time, in whole blocks. */
-static uint32_t next_target(const render *r, uint32_t n) {
-    const sf_render_options *o = &r->options;
-    bool adaptive = r->options.relative_tolerance > 0 || r->options.absolute_tolerance > 0;
-    uint32_t most = o->spp ? o->start + o->spp : adaptive ? o->max_spp : SF_MAX_SPP;
-    uint32_t step = n / 4 / SF_LANES * SF_LANES;
-    step = step < SF_LANES ? SF_LANES : step > 256 ? 256 : step;
-    /* Without a clock to watch, nothing is decided before min_spp or during a fixed count. */
-    if (o->seconds == 0 && o->spp) step = 64;
-    uint32_t target = n / SF_LANES * SF_LANES + step;
-    if (adaptive && n < o->min_spp && (o->seconds == 0 || target > o->min_spp)) target = o->min_spp;
-    return target < most ? target : most;
+/* Looks at the lap's pixels where the rule can, and closes those that are done. */
+static void decide(render *r) {
+    fix_tolerance(r);
+    if (r->lap.levels && r->to == r->look && sf_stop_is_look(&r->options, r->look))
+        sf_pool_run(r->pool, sf_stop_pool_count(r->film), look_at_pool, wake, r);
+    sf_pool_run(r->pool, r->tile_count, decide_tile, wake, r);
 }
 
-/* ---- the whole ---- */
+/* ---- which pixels ---- */
 
-static bool tile_is_active(const render *r, uint32_t tile) {
+static bool tile_has(const render *r, uint32_t tile, const uint64_t *cells) {
     cell_range range = tile_range(r, tile);
     for (uint32_t y = range.y0; y < range.y1; ++y)
         for (uint32_t x = range.x0; x < range.x1; ++x)
-            if (r->active[(size_t)y * r->cell_columns + x]) return true;
+            if (cells[(size_t)y * r->cell_columns + x]) return true;
     return false;
 }
 
 static void list_tiles(render *r) {
     r->tile_count = 0;
     for (uint32_t tile = 0; tile < r->tile_columns * r->tile_rows; ++tile)
-        if (tile_is_active(r, tile)) r->tiles[r->tile_count++] = tile;
+        if (tile_has(r, tile, r->active)) r->tiles[r->tile_count++] = tile;
 }
 
-static uint64_t count_active(const render *r) {
+static size_t cell_count(const render *r) { return (size_t)r->cell_columns * r->cell_rows; }
+
+static uint64_t count_pixels(const render *r, const uint64_t *cells) {
     uint64_t count = 0;
-    for (size_t i = 0; i < (size_t)r->cell_columns * r->cell_rows; ++i)
-        count += sf_count_bits((uint32_t)r->active[i]) + sf_count_bits((uint32_t)(r->active[i] >> 32));
+    for (size_t i = 0; i < cell_count(r); ++i)
+        count += sf_count_bits((uint32_t)cells[i]) + sf_count_bits((uint32_t)(cells[i] >> 32));
     return count;
+}
+
+/* The least count and the largest half-width among a tile's open pixels beyond the target. */
+static void survey_tile(void *user, unsigned worker, size_t tile) {
+    (void)worker;
+    render *r = user;
+    cell_range range = tile_range(r, (uint32_t)tile);
+    uint32_t least = UINT32_MAX;
+    double worst = 0;
+    for (uint32_t y = range.y0; y < range.y1; ++y)
+        for (uint32_t x = range.x0; x < range.x1; ++x) {
+            uint32_t cell = y * r->cell_columns + x;
+            for (uint32_t m = 0; m < CELL_PIXELS; ++m) {
+                if (!(r->open[cell] >> m & 1u)) continue;
+                const sf_film_pixel *pixel = cell_pixel(r, cell, m);
+                double width = (double)pixel->half_width;
+                worst = width > worst ? width : worst;
+                if (width > r->target && taken(pixel) < least) least = (uint32_t)taken(pixel);
+            }
+        }
+    r->least[tile] = least;
+    r->worst[tile] = worst;
+}
+
+/* Activates a tile's open pixels that have `from` samples and are beyond the target. */
+static void choose_tile(void *user, unsigned worker, size_t tile) {
+    (void)worker;
+    render *r = user;
+    cell_range range = tile_range(r, (uint32_t)tile);
+    r->chosen[tile] = 0;
+    for (uint32_t y = range.y0; y < range.y1; ++y)
+        for (uint32_t x = range.x0; x < range.x1; ++x) {
+            uint32_t cell = y * r->cell_columns + x;
+            r->active[cell] = 0;
+            for (uint32_t m = 0; m < CELL_PIXELS; ++m) {
+                if (!(r->open[cell] >> m & 1u)) continue;
+                const sf_film_pixel *pixel = cell_pixel(r, cell, m);
+                if (taken(pixel) != r->from || !((double)pixel->half_width > r->target)) continue;
+                r->active[cell] |= UINT64_C(1) << m;
+                ++r->chosen[tile];
+            }
+        }
+}
+
+static uint64_t choose_beyond(render *r, double target) {
+    size_t tiles = (size_t)r->tile_columns * r->tile_rows;
+    uint64_t count = 0;
+    r->target = target;
+    sf_pool_run(r->pool, tiles, choose_tile, wake, r);
+    for (size_t tile = 0; tile < tiles; ++tile) count += r->chosen[tile];
+    return count;
+}
+
+/* Keeps, of the chosen pixels, as many as a budget of samples still pays for: those with the
+ * largest half-widths. False: of none. */
+static bool keep_within_samples(render *r, uint64_t count) {
+    if (!r->options.samples) return true;
+    uint64_t left = r->options.samples - samples_traced(r);
+    uint32_t step = r->look - r->from;
+    if (r->from == 0 && left / count < step) { /* not even a first look: as far as it goes, together */
+        r->look = (uint32_t)(left / count);
+        return true;
+    }
+    if (count <= left / step) return true;
+    double low = r->target, high = 0;
+    for (size_t t = 0; t < (size_t)r->tile_columns * r->tile_rows; ++t) high = fmax(high, r->worst[t]);
+    for (int halving = 0; halving < 40; ++halving) {
+        double middle = low + (high - low) / 2;
+        if (choose_beyond(r, middle) > left / step)
+            low = middle;
+        else
+            high = middle;
+    }
+    return choose_beyond(r, high) > 0;
+}
+
+/* Chooses the pixels of the next lap of a budget. */
+static bool choose_by_budget(render *r) {
+    size_t tiles = (size_t)r->tile_columns * r->tile_rows;
+    for (;;) {
+        uint32_t least = UINT32_MAX;
+        double worst = 0;
+        sf_pool_run(r->pool, tiles, survey_tile, wake, r);
+        for (size_t tile = 0; tile < tiles; ++tile) {
+            least = r->least[tile] < least ? r->least[tile] : least;
+            worst = fmax(worst, r->worst[tile]);
+        }
+        if (least < UINT32_MAX) {
+            r->from = least;
+            r->look = sf_stop_next_look(&r->options, r->from);
+            return keep_within_samples(r, choose_beyond(r, r->target));
+        }
+        if (!(worst > 0)) return false;
+        r->target = fmin(r->target, worst) * 0.7; /* half the variance, nearly */
+    }
+}
+
+/* Sets the next lap: its pixels, where it begins and where it looks. False: nothing is left. */
+static bool begin_lap(render *r) {
+    bool budget = !r->options.spp && !(r->options.relative_tolerance > 0 || r->options.absolute_tolerance > 0);
+    if (budget) {
+        if (!choose_by_budget(r)) return false;
+    } else {
+        r->from = r->to;
+        r->look = sf_stop_next_look(&r->options, r->from);
+        memcpy(r->active, r->open, cell_count(r) * sizeof *r->active);
+    }
+    r->lap = sf_stop_lap(&r->options, r->look);
+    list_tiles(r);
+    return r->tile_count > 0;
+}
+
+/* ---- rounds ---- */
+
+/* Where the next round of the lap ends: with a clock to watch, rounds are short. */
+static uint32_t round_end(const render *r) {
+    uint32_t end = r->look < most_samples(r) ? r->look : most_samples(r);
+    if (r->options.seconds == 0) return end;
+    uint32_t step = r->from / 4 / SF_LANES * SF_LANES;
+    step = step < SF_LANES ? SF_LANES : step > 256 ? 256 : step;
+    uint32_t target = r->from / SF_LANES * SF_LANES + step;
+    return target < end ? target : end;
+}
+
+static void end_round(render *r, uint64_t region) {
+    r->progress.round = ++r->film->summary.rounds;
+    r->progress.pixels_done = (region - count_pixels(r, r->open)) * r->progress.pixels / region;
+    report(r, true);
+}
+
+/* Closes what is still open: time is up, a budget is spent, or the caller asked to stop. */
+static void close_all(render *r) {
+    if (sf_atomic_load(&r->state) == RUNNING) sf_atomic_store(&r->state, SPENT);
+    memcpy(r->active, r->open, cell_count(r) * sizeof *r->active);
+    list_tiles(r);
+    sf_pool_run(r->pool, r->tile_count, decide_tile, wake, r);
 }
 
 static void run_rounds(render *r) {
     sf_film_summary *summary = &r->film->summary;
-    uint64_t region = count_active(r), active = region;
-    r->to = r->options.start;
+    uint64_t region = count_pixels(r, r->open);
     summary->tolerance = -1;
-    while (active > 0) {
-        r->from = r->to;
-        r->to = next_target(r, r->from);
-        sf_pool_run(r->pool, r->tile_count, sample_tile, wake, r);
-        fix_tolerance(r);
-        sf_pool_run(r->pool, r->tile_count, decide_tile, wake, r);
-        list_tiles(r);
-        active = count_active(r);
-        ++summary->rounds;
-        r->progress.round = summary->rounds;
-        r->progress.pixels_done = (region - active) * r->progress.pixels / region;
-        report(r, true);
-        /* A stop asked for between rounds: the pixels still active have only to be told. */
-        if (active > 0 && sf_atomic_load(&r->state) != RUNNING) {
-            sf_pool_run(r->pool, r->tile_count, decide_tile, wake, r);
-            active = 0;
-        }
+    r->to = r->options.start;
+    r->target = -1;
+    while (sf_atomic_load(&r->state) == RUNNING && begin_lap(r)) {
+        bool lap_ended;
+        do {
+            r->to = round_end(r);
+            sf_pool_run(r->pool, r->tile_count, sample_tile, wake, r);
+            lap_ended = r->to == r->look || r->to == most_samples(r);
+            if (lap_ended && sf_atomic_load(&r->state) == RUNNING) decide(r);
+            r->from = r->to;
+            end_round(r, region);
+        } while (!lap_ended && sf_atomic_load(&r->state) == RUNNING);
     }
+    close_all(r);
     if (summary->tolerance < 0) summary->tolerance = 0;
 }
+
+/* ---- the whole ---- */
 
 /* The pixels of a cell of which `width` columns and `height` rows lie in the film. */
 static uint64_t pixels_inside(uint32_t width, uint32_t height) {
@@ -336,15 +532,19 @@ static sf_status lay_out_cells(render *r, sf_error *error) {
     r->tile_y0 = y0 / r->tile_cells * r->tile_cells;
     r->tile_columns = (x0 + r->cell_columns - r->tile_x0 + r->tile_cells - 1) / r->tile_cells;
     r->tile_rows = (y0 + r->cell_rows - r->tile_y0 + r->tile_cells - 1) / r->tile_cells;
-    size_t cells = (size_t)r->cell_columns * r->cell_rows, tiles = (size_t)r->tile_columns * r->tile_rows;
+    size_t cells = cell_count(r), tiles = (size_t)r->tile_columns * r->tile_rows;
+    r->open = malloc(cells * sizeof *r->open);
     r->active = malloc(cells * sizeof *r->active);
     r->tiles = malloc(tiles * sizeof *r->tiles);
-    if (!r->active || !r->tiles) return sf_fail_memory(error, "the lists of cells and tiles", cells * 8 + tiles * 4);
+    r->least = malloc(tiles * sizeof *r->least);
+    r->worst = malloc(tiles * sizeof *r->worst);
+    r->chosen = malloc(tiles * sizeof *r->chosen);
+    if (!r->open || !r->active || !r->tiles || !r->least || !r->worst || !r->chosen)
+        return sf_fail_memory(error, "the lists of cells and tiles", cells * 16 + tiles * 24);
     for (uint32_t y = 0; y < r->cell_rows; ++y)
         for (uint32_t x = 0; x < r->cell_columns; ++x)
-            r->active[(size_t)y * r->cell_columns + x] =
+            r->open[(size_t)y * r->cell_columns + x] =
                 pixels_inside(film->width - x * SF_CELL_SIZE, film->height - y * SF_CELL_SIZE);
-    list_tiles(r);
     return SF_STATUS_OK;
 }
 
@@ -369,11 +569,15 @@ static sf_status prepare(render *r, sf_error *error) {
     if (!status) status = lay_out_cells(r, error);
     if (!status) status = hire_workers(r, error);
     if (status) return status;
+    uint64_t traced = (uint64_t)r->film->width * r->film->height;
+    if (o->samples && o->samples < traced)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "samples is %" PRIu64 "; at least one for each of %" PRIu64 " pixels is allowed",
+                       o->samples, traced);
     r->context.camera = frame_camera(&scene->camera, o->width, o->height);
     r->context.filter = o->pixel_filter;
     r->context.seeds = o->seeds;
     r->context.isa = sf_isa_active();
-    r->z = sf_normal_factor(o->confidence);
+    r->z = sf_stop_factor(o);
     r->deadline = o->seconds > 0 ? r->start + o->seconds : 0;
     r->progress.pixels = (uint64_t)r->film->crop_width * r->film->crop_height;
     r->progress.expected_samples = (uint64_t)o->spp * r->film->width * r->film->height;
@@ -383,7 +587,7 @@ static sf_status prepare(render *r, sf_error *error) {
 
 static void finish(render *r) {
     sf_film_summary *summary = &r->film->summary;
-    for (uint32_t i = 0; i < r->options.threads; ++i) summary->traced_samples += sf_atomic_load(&r->workers[i].samples);
+    summary->traced_samples = samples_traced(r);
     summary->confidence = r->options.confidence;
     summary->threads = r->options.threads;
     if (!r->level_fixed) measure_level(r);
@@ -411,8 +615,12 @@ sf_status sf_render(const sf_scene *scene, const sf_render_options *options, sf_
     }
     sf_pool_destroy(r->pool);
     sf_aligned_free(r->workers);
+    free(r->open);
     free(r->active);
     free(r->tiles);
+    free(r->least);
+    free(r->worst);
+    free(r->chosen);
     if (status)
         sf_film_destroy(r->film);
     else

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include <inttypes.h>
 #include <math.h>
 
 #include "error.h"
@@ -14,6 +15,7 @@ sf_render_options sf_render_options_default(void) {
                                .min_spp = 32,
                                .max_spp = 4096,
                                .pattern = SF_PATTERN_SOBOL,
+                               .stop = SF_STOP_DYADIC,
                                .tile_size = 16};
 }
 
@@ -71,7 +73,11 @@ static sf_status check_budget(sf_render_options *o, sf_error *error) {
     if (o->spp && tolerance)
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
                        "spp is %u and a tolerance is given too; give one: a fixed count, or an accuracy", o->spp);
-    if (!o->spp && !tolerance && !(o->seconds > 0)) o->relative_tolerance = 0.01;
+    if (o->samples && (o->spp || tolerance))
+        return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                       "samples is %" PRIu64 " beside spp or a tolerance; a budget of samples stands alone or with seconds",
+                       o->samples);
+    if (!o->spp && !tolerance && !o->samples && !(o->seconds > 0)) o->relative_tolerance = 0.01;
     return SF_STATUS_OK;
 }
 

@@ -142,7 +142,7 @@ sf_pattern find_pattern(const std::string &name) {
 
 film_handle *render(const scene_handle &scene, uint32_t width, uint32_t height, std::array<uint32_t, 4> crop,
                     uint32_t spp, uint32_t start, double relative_tolerance, double absolute_tolerance, double confidence,
-                    uint32_t min_spp, uint32_t max_spp, double seconds, const std::string &pattern,
+                    uint32_t min_spp, uint32_t max_spp, uint64_t samples, double seconds, const std::string &pattern,
                     const std::string &pixel_filter, const std::string &stop, const std::string &seeds, uint64_t seed,
                     uint32_t threads, uint32_t tile_size, nb::object observer) {
     watcher watch{observer, false, nullptr};
@@ -157,6 +157,7 @@ film_handle *render(const scene_handle &scene, uint32_t width, uint32_t height, 
     options.confidence = confidence;
     options.min_spp = min_spp;
     options.max_spp = max_spp;
+    options.samples = samples;
     options.seconds = seconds;
     options.pattern = find_pattern(pattern);
     options.pixel_filter = find("pixel_filter", pixel_filter, sf_pixel_filter_name);
@@ -206,6 +207,6 @@ void bind_render(nb::module_ &m) {
 
     m.def("render", &render, nb::rv_policy::take_ownership, "scene"_a, nb::kw_only(), "width"_a, "height"_a, "crop"_a,
           "spp"_a, "start"_a, "relative_tolerance"_a, "absolute_tolerance"_a, "confidence"_a, "min_spp"_a, "max_spp"_a,
-          "seconds"_a, "pattern"_a, "pixel_filter"_a, "stop"_a, "seeds"_a, "seed"_a, "threads"_a, "tile_size"_a,
+          "samples"_a, "seconds"_a, "pattern"_a, "pixel_filter"_a, "stop"_a, "seeds"_a, "seed"_a, "threads"_a, "tile_size"_a,
           "progress"_a.none());
 }

@@ -220,11 +220,11 @@ def _tolerance(value: float | Tolerance | None) -> tuple[float, float]:
     return value.relative, value.absolute
 
 
-def _count(name: str, value: int | None) -> int:
+def _count(name: str, value: int | None, bits: int = 32) -> int:
     """A count that may be None, which is C's 0; so that 0 itself must be refused here."""
     if value is None:
         return 0
-    count = integer(name, value, bits=32)
+    count = integer(name, value, bits=bits)
     if count == 0:
         raise ValueError(f"{name} is 0; give at least 1, or None")
     return count
@@ -288,10 +288,11 @@ def render(
     confidence: float = 0.95,
     min_spp: int = 32,
     max_spp: int = 4096,
+    samples: int | None = None,
     seconds: float | None = None,
     pattern: str = "sobol",
     pixel_filter: str = "box",
-    stop: str = "standard-error",
+    stop: str = "dyadic",
     seeds: str = "pixel",
     seed: int = 0,
     threads: int | None = None,
@@ -317,14 +318,21 @@ def render(
         Of the half-widths, per pixel, in (0, 1).
     min_spp, max_spp : int
         Samples a pixel before the first decision, and at the most.
+    samples : int, optional
+        A budget of samples of the whole picture, alone or with ``seconds``: they go where they
+        lower the largest half-width most.
     seconds : float, optional
-        A time limit. Alone it is a budget, spent on every pixel.
+        A time limit. Alone it is a budget, spent likewise.
     pattern : str
         One of `sunfleck.PATTERNS`.
     pixel_filter : "box", "tent" or "gaussian"
         What a pixel averages over: itself, two pixels' width, or a Gaussian of sigma 0.4 pixel.
-    stop : "standard-error"
-        The rule by which a pixel's half-width is told from its samples.
+    stop : "dyadic", "replicates" or "standard-error"
+        The rule by which a pixel's half-width is told from its samples. "dyadic": from the
+        differences between the halves of its sequence, the halves' halves, …, shared with its
+        neighbours; it looks at 32, 64, 128, … samples. "replicates": eight independent copies of
+        the pattern and Student's t, at 128, 256, … samples. "standard-error": the classic
+        z·s/√N, which takes a pattern's points for independent.
     seeds : "pixel", "thread" or "shared"
         How threads come by random numbers: keyed by pixel; a stream for each thread; the same
         stream for all, which repeats their noise and is there to be seen.
@@ -384,6 +392,7 @@ def render(
         "confidence": number("confidence", confidence),
         "min_spp": integer("min_spp", min_spp, bits=32),
         "max_spp": integer("max_spp", max_spp, bits=32),
+        "samples": _count("samples", samples, bits=64),
         "seconds": _seconds(seconds),
         "pattern": text("pattern", pattern),
         "pixel_filter": text("pixel_filter", pixel_filter),

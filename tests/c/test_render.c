@@ -456,6 +456,7 @@ static void test_half_widths_of_independent_samples_cover_the_truth(void **state
     sf_scene *scene = spot_scene(&s, 0.4f, 0.1f, 1);
     sf_render_options options = options_for(64, 64);
     options.pattern = SF_PATTERN_RANDOM;
+    options.stop = SF_STOP_STANDARD_ERROR;
     double expected = lit_floor_radiance((double)0.4f, (double)0.1f);
     static const double confidences[] = {0.5, 0.95, 0.99};
     for (int i = 0; i < 3; ++i) {
@@ -479,6 +480,7 @@ static void test_adaptive_pixels_say_why_they_stopped(void **state) {
     lit_floor_create(&s, 1);
     sf_render_options options = options_for(64, 0);
     options.relative_tolerance = 0.02;
+    options.stop = SF_STOP_STANDARD_ERROR;
     options.min_spp = 48;
     options.max_spp = 500;
     sf_film *film = render(s.scene, &options);

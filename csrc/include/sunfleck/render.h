@@ -34,7 +34,17 @@ typedef enum sf_stop_rule {
      * running vector mean and the scalar sum of squares. Kept as the baseline: points of a
      * low-discrepancy pattern are not independent (it then overstates), and a pixel that has
      * seen nothing has variance zero (it then stops, wrongly). */
-    SF_STOP_STANDARD_ERROR = 0
+    SF_STOP_STANDARD_ERROR = 0,
+
+    /* Eight independent replicates of the pattern a pixel, and Student's t over their means. Looks
+     * at 128, 256, 512, … samples. The plainest of arguments, at the price of the pattern's
+     * strength at n / 8 points. */
+    SF_STOP_REPLICATES,
+
+    /* The default. Differences between the halves of one sequence, the halves' own halves, … four
+     * levels down, whose decay says how variance falls with n; pooled over the pixels around. Looks
+     * at 32, 64, 128, … samples, where min_spp allows. Coverage and cost measured: docs/render.md. */
+    SF_STOP_DYADIC
 } sf_stop_rule;
 
 /* How threads come by their random numbers. */
@@ -97,11 +107,14 @@ typedef struct sf_render_options {
     double confidence;       /* of the half-widths, in (0, 1); default 0.95 */
     uint32_t min_spp;        /* before any decision, 2 .. max_spp; default 32 */
     uint32_t max_spp;        /* 2 .. SF_MAX_SPP; default 4096 */
-    double seconds;          /* time limit, > 0; 0: none (default). Alone it is a budget: every
-                                pixel is refined until it is spent */
+    uint64_t samples;        /* budget of samples of the traced region, without spp and tolerances:
+                                they go where they lower the largest half-width most; 0: none
+                                (default); at least one a pixel */
+    double seconds;          /* time limit, > 0; 0: none (default). Alone it is a budget, spent as
+                                `samples` is */
     sf_pattern pattern;      /* uniform, random, jittered, halton, sobol (default) */
     sf_pixel_filter pixel_filter; /* default box */
-    sf_stop_rule stop;       /* default standard-error */
+    sf_stop_rule stop;       /* default dyadic */
     sf_seed_policy seeds;    /* default pixel */
     uint64_t seed;           /* default 0 */
     uint32_t threads;        /* 1 .. SF_MAX_THREADS; 0: one for each processor (default) */

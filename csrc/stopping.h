@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* When a pixel is done: at which sample counts a rule looks, and what it makes of the evidence.
+ *
+ * The rule "dyadic" needs no replicates. Let a pixel's first n = 2^m points of one scrambled
+ * sequence have halves with means A and B. The halves are exchangeable, so that with d = (A-B)/2
+ * the variance of a mean obeys V(n/2) = V(n) + E d^2. Where V falls as n^-a, V(n) = E d^2 / (2^a - 1):
+ * a = 1 for independent samples, up to 3 for stratified ones. The same holds for the two halves'
+ * own halves, and so on: four levels of differences are kept, pairs of n/2, n/4, n/8 and n/16
+ * points. Their decay, pooled over cells of 16 x 16 pixels fixed in the frame, gives a, held
+ * within 1 .. 2.5; every level then predicts V(n), and the predictions are averaged in proportion
+ * to their pairs, and over the 3 x 3 pixels around.
+ *
+ * Decisions fall at barriers between rounds, from all pixels' evidence up to there: no bit
+ * depends on threads or tiles. */
+#ifndef SUNFLECK_STOPPING_H
+#define SUNFLECK_STOPPING_H
+
+#include <stdbool.h>
+
+#include "film.h"
+
+#define SF_POOL_SIZE 16u /* pixels a side of the cells that decay is pooled over */
+
+/* The samples between two looks: units of 2^unit_shift blocks, paired up over `levels` levels. */
+typedef struct sf_lap {
+    unsigned levels; /* 0: the rule keeps no differences */
+    unsigned unit_shift;
+} sf_lap;
+
+/* The least count above n at which the rule looks, whatever the render's own end. */
+uint32_t sf_stop_next_look(const sf_render_options *options, uint32_t n);
+
+/* Whether the rule can tell a half-width from n samples of every pixel. */
+bool sf_stop_is_look(const sf_render_options *options, uint32_t n);
+
+/* The lap that ends with the look at `look` samples. */
+sf_lap sf_stop_lap(const sf_render_options *options, uint32_t look);
+
+/* Readies a pixel that has been looked at for the lap after. */
+void sf_dyadic_begin(sf_film_pixel *pixel);
+
+/* Adds the mean of (R+G+B)/3 over block number `block` of the pixel's. */
+void sf_dyadic_add(sf_dyadic *dyadic, double mean, uint32_t block, sf_lap lap);
+
+/* How many cells the decay is pooled over in this film. */
+uint32_t sf_stop_pool_count(const sf_film *film);
+
+/* Looks at the pixels of one pooling cell that have `look` samples: fills their `variance` and
+ * `look`. */
+void sf_stop_look_at_pool(sf_film *film, uint32_t pool, uint32_t look, sf_lap lap);
+
+/* How many standard errors make the rule's half-width. */
+double sf_stop_factor(const sf_render_options *options);
+
+/* The half-width of pixel (x, y) of the film by the rule; z is sf_stop_factor's. To be called when all pools have been looked at. Infinity where fewer than two samples were taken. */
+float sf_stop_half_width(const sf_film *film, const sf_render_options *options, uint32_t x, uint32_t y, double z);
+
+#endif
