@@ -150,7 +150,7 @@ def test_a_budget_of_samples_is_spent_where_the_error_is_largest(penumbra: sf.Sc
     even = sf.render(penumbra, 64, 64, spp=64)
     total = int(image.samples.sum(dtype=np.uint64))
     assert 0.8 * budget < total <= budget
-    assert image.half_width.max() < 0.5 * even.half_width.max()
+    assert image.half_width.max() < 0.6 * even.half_width.max()
     with pytest.raises(ValueError, match="samples is 10"):
         sf.render(penumbra, 64, 64, samples=10)
     with pytest.raises(ValueError, match="beside spp"):
