@@ -3,7 +3,12 @@
 
 #include "rng_kernels.h"
 
+#include <string.h>
+
 #include "platform.h"
+#include "rng_xoshiro_lanes.h"
+
+/* ---- floats ---- */
 
 static void f32_from_u32(size_t count, unsigned shift, const uint32_t *SF_RESTRICT words, float *SF_RESTRICT out) {
     for (size_t i = 0; i < count; ++i) out[i] = sf_float_from_bits(words[i] << shift);
@@ -21,8 +26,144 @@ static void f64_from_u32(size_t count, unsigned shift, const uint32_t *SF_RESTRI
     }
 }
 
+/* ---- splitmix64 ---- */
+
 static void splitmix64(uint64_t state, size_t count, uint64_t *SF_RESTRICT out) {
     for (size_t i = 0; i < count; ++i) out[i] = sf_mix64(state + (i + 1) * UINT64_C(0x9e3779b97f4a7c15));
 }
 
-const sf_rng_kernels SF_AT_LEVEL(sf_rng_kernels) = {f32_from_u32, f64_from_u64, f64_from_u32, splitmix64};
+/* ---- Mersenne Twisters ---- */
+
+static inline uint32_t twist32(uint32_t high, uint32_t low) {
+    uint32_t x = (high & 0x80000000u) | (low & 0x7fffffffu);
+    return x >> 1 ^ (SF_MT19937_TWIST & -(x & 1));
+}
+
+static void mt19937_refill(uint32_t *w) {
+    /* Words depend on others 227 and 397 away, so that many are made side by side. */
+    for (int i = 0; i < 227; ++i) w[i] = w[i + 397] ^ twist32(w[i], w[i + 1]);
+    for (int i = 227; i < 623; ++i) w[i] = w[i - 227] ^ twist32(w[i], w[i + 1]);
+    w[623] = w[396] ^ twist32(w[623], w[0]);
+}
+
+static void mt19937_temper(size_t count, const uint32_t *SF_RESTRICT words, uint32_t *SF_RESTRICT out) {
+    for (size_t i = 0; i < count; ++i) {
+        uint32_t x = words[i];
+        x ^= x >> 11;
+        x ^= (x << 7) & 0x9d2c5680u;
+        x ^= (x << 15) & 0xefc60000u;
+        out[i] = x ^ x >> 18;
+    }
+}
+
+static inline uint64_t twist64(uint64_t high, uint64_t low) {
+    uint64_t x = (high & ~UINT64_C(0x7fffffff)) | (low & 0x7fffffffu);
+    return x >> 1 ^ (SF_MT19937_64_TWIST & -(x & 1));
+}
+
+static void mt19937_64_refill(uint64_t *w) {
+    for (int i = 0; i < 156; ++i) w[i] = w[i + 156] ^ twist64(w[i], w[i + 1]);
+    for (int i = 156; i < 311; ++i) w[i] = w[i - 156] ^ twist64(w[i], w[i + 1]);
+    w[311] = w[155] ^ twist64(w[311], w[0]);
+}
+
+static void mt19937_64_temper(size_t count, const uint64_t *SF_RESTRICT words, uint64_t *SF_RESTRICT out) {
+    for (size_t i = 0; i < count; ++i) {
+        uint64_t x = words[i];
+        x ^= (x >> 29) & UINT64_C(0x5555555555555555);
+        x ^= (x << 17) & UINT64_C(0x71d67fffeda60000);
+        x ^= (x << 37) & UINT64_C(0xfff7eee000000000);
+        out[i] = x ^ x >> 43;
+    }
+}
+
+/* ---- Philox ---- */
+
+enum { LANES = 8 };
+
+/* Eight counters in a row side by side, with words of 32 bits kept in 64, as products are. */
+static void philox4x32_lanes(uint64_t first, const uint32_t *high, const uint32_t *key, uint32_t *SF_RESTRICT out) {
+    const uint64_t low = 0xffffffffu;
+    uint64_t x0[LANES], x1[LANES], x2[LANES], x3[LANES];
+    uint32_t k0 = key[0], k1 = key[1];
+    for (int l = 0; l < LANES; ++l) {
+        x0[l] = (first + (unsigned)l) & low;
+        x1[l] = (first + (unsigned)l) >> 32;
+        x2[l] = high[0];
+        x3[l] = high[1];
+    }
+    for (int round = 0; round < 10; ++round) {
+        for (int l = 0; l < LANES; ++l) {
+            uint64_t p = UINT64_C(0xd2511f53) * x0[l], q = UINT64_C(0xcd9e8d57) * x2[l];
+            x0[l] = q >> 32 ^ x1[l] ^ k0;
+            x2[l] = p >> 32 ^ x3[l] ^ k1;
+            x1[l] = q & low;
+            x3[l] = p & low;
+        }
+        k0 += 0x9e3779b9u;
+        k1 += 0xbb67ae85u;
+    }
+    for (int l = 0; l < LANES; ++l) {
+        out[4 * l] = (uint32_t)x0[l];
+        out[4 * l + 1] = (uint32_t)x1[l];
+        out[4 * l + 2] = (uint32_t)x2[l];
+        out[4 * l + 3] = (uint32_t)x3[l];
+    }
+}
+
+static void philox4x32(const uint32_t *counter, const uint32_t *key, size_t blocks, uint32_t *SF_RESTRICT out) {
+    uint64_t first = (uint64_t)counter[1] << 32 | counter[0];
+    size_t done = 0;
+    for (; blocks - done >= LANES; done += LANES) philox4x32_lanes(first + done, counter + 2, key, out + 4 * done);
+    for (; done < blocks; ++done) {
+        uint64_t n = first + done;
+        const uint32_t now[4] = {(uint32_t)n, (uint32_t)(n >> 32), counter[2], counter[3]};
+        sf_philox4x32_block(now, key, out + 4 * done);
+    }
+}
+
+static void philox4x64(const uint64_t *counter, const uint64_t *key, size_t blocks, uint64_t *SF_RESTRICT out) {
+    for (size_t i = 0; i < blocks; ++i) {
+        const uint64_t now[4] = {counter[0] + i, counter[1], counter[2], counter[3]};
+        sf_philox4x64_block(now, key, out + 4 * i);
+    }
+}
+
+/* ---- PCG64 DXSM ---- */
+
+static void pcg64dxsm(sf_pcg64dxsm *state, size_t count, uint64_t *SF_RESTRICT out) {
+    sf_pcg64dxsm g = *state;
+    for (size_t i = 0; i < count; ++i) out[i] = sf_pcg64dxsm_next(&g);
+    *state = g;
+}
+
+/* ---- xoshiro256++ ---- */
+
+static void xoshiro256pp(sf_xoshiro256pp *state, size_t count, sf_rng_form form, void *out) {
+    unsigned char *bytes = out;
+    size_t done = 0;
+#if defined(__AVX2__) /* below, eight lanes are slower than one */
+    done = xoshiro_fill_lanes(state, count, form, out);
+#endif
+    sf_xoshiro256pp g = *state;
+    for (; done < count; ++done) {
+        uint64_t line[1] = {sf_xoshiro256pp_next(&g)};
+        xoshiro_store(line, 1, form, bytes + 8 * done);
+    }
+    *state = g;
+}
+
+const sf_rng_kernels SF_AT_LEVEL(sf_rng_kernels) = {
+    .f32_from_u32 = f32_from_u32,
+    .f64_from_u64 = f64_from_u64,
+    .f64_from_u32 = f64_from_u32,
+    .splitmix64 = splitmix64,
+    .mt19937_refill = mt19937_refill,
+    .mt19937_temper = mt19937_temper,
+    .mt19937_64_refill = mt19937_64_refill,
+    .mt19937_64_temper = mt19937_64_temper,
+    .philox4x32 = philox4x32,
+    .philox4x64 = philox4x64,
+    .pcg64dxsm = pcg64dxsm,
+    .xoshiro256pp = xoshiro256pp,
+};

@@ -8,18 +8,18 @@
 
 enum { MAX_WORDS = 4 };
 
-uint64_t sf_lcg_skip(uint64_t x, uint64_t a, uint64_t c, uint64_t count) {
+uint64_t sf_lcg_skip(uint64_t x, uint64_t a, uint64_t c, uint64_t m, uint64_t count) {
     /* Compose the map with itself for each bit of the count. */
     uint64_t total_a = 1, total_c = 0;
     for (; count; count >>= 1) {
         if (count & 1) {
-            total_a *= a;
-            total_c = total_c * a + c;
+            total_a = sf_multiply_add_modulo64(total_a, a, 0, m);
+            total_c = sf_multiply_add_modulo64(total_c, a, c, m);
         }
-        c *= a + 1;
-        a *= a;
+        c = sf_multiply_add_modulo64(c, a, c, m);
+        a = sf_multiply_add_modulo64(a, a, 0, m);
     }
-    return x * total_a + total_c;
+    return sf_multiply_add_modulo64(x, total_a, total_c, m);
 }
 
 /* p <- p t mod the characteristic polynomial. */

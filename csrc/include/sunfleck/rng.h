@@ -15,124 +15,42 @@
 #define SUNFLECK_RNG_H
 
 #include "sunfleck/base.h"
+#include "sunfleck/rng_congruential.h"
+#include "sunfleck/rng_counter.h"
+#include "sunfleck/rng_linear.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* Park & Miller 1988, "minimal standard": x = 16807 x mod 2^31 - 1. A draw is 1 .. 2^31 - 2, and
- * the period is 2^31 - 2: seconds of a render. State 0 is refused. */
-typedef struct sf_minstd {
-    uint32_t state; /* 1 .. 2^31 - 2 */
-} sf_minstd;
-
-static inline uint32_t sf_minstd_next(sf_minstd *g) {
-    /* Reduce modulo 2^31 - 1 by adding the high part to the low, as 2^31 = 1 there. */
-    uint64_t product = UINT64_C(16807) * g->state;
-    uint32_t x = (uint32_t)(product & 0x7fffffffu) + (uint32_t)(product >> 31);
-    return g->state = x >= 0x7fffffffu ? x - 0x7fffffffu : x;
-}
-
-/* Marsaglia 2003, "Xorshift RNGs", 64 bits, shifts 21-35-4: right, left, right. Period
- * 2^64 - 1; linear over bits; state 0 would stay 0 and is refused. */
-typedef struct sf_xorshift64 {
-    uint64_t state; /* not 0 */
-} sf_xorshift64;
-
-static inline uint64_t sf_xorshift64_next(sf_xorshift64 *g) {
-    uint64_t x = g->state;
-    x ^= x >> 21;
-    x ^= x << 35;
-    x ^= x >> 4;
-    return g->state = x;
-}
-
-/* The same in the order left, right, left. */
-static inline uint64_t sf_xorshift64_lrl_next(sf_xorshift64 *g) {
-    uint64_t x = g->state;
-    x ^= x << 21;
-    x ^= x >> 35;
-    x ^= x << 4;
-    return g->state = x;
-}
-
-/* The lecture's combination: the shift-XOR above, XORed with the linear congruential
- * x = 6364136223846793005 x + 1442695040888963407 mod 2^64 (Knuth's MMIX constants). The LCG's
- * low bits are weak and the shift-XOR is linear; neither shows through the other. Period
- * 2^64 (2^64 - 1). */
-typedef struct sf_combined {
-    uint64_t lcg;
-    uint64_t xorshift; /* not 0 */
-} sf_combined;
-
-static inline uint64_t sf_combined_next(sf_combined *g) {
-    sf_xorshift64 shifter = {g->xorshift};
-    g->lcg = g->lcg * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    g->xorshift = sf_xorshift64_next(&shifter);
-    return g->lcg ^ g->xorshift;
-}
-
-/* O'Neill 2014, PCG-XSH-RR 64/32: period 2^64 in each of 2^63 streams. */
-typedef struct sf_pcg32 {
-    uint64_t state;
-    uint64_t increment; /* odd: 2 stream + 1 */
-} sf_pcg32;
-
-/* Seeded as the reference's pcg32_srandom_r(seed, stream); the top bit of `stream` is lost. */
-static inline sf_pcg32 sf_pcg32_seeded(uint64_t seed, uint64_t stream) {
-    sf_pcg32 g;
-    g.increment = stream << 1 | 1;
-    g.state = (g.increment + seed) * UINT64_C(6364136223846793005) + g.increment;
-    return g;
-}
-
-static inline uint32_t sf_pcg32_next(sf_pcg32 *g) {
-    uint64_t x = g->state;
-    g->state = x * UINT64_C(6364136223846793005) + g->increment;
-    uint32_t folded = (uint32_t)((x >> 18 ^ x) >> 27), turn = (uint32_t)(x >> 59);
-    return folded >> turn | folded << (-turn & 31);
-}
-
-/* Blackman & Vigna 2019, xoshiro256++ 1.0: period 2^256 - 1; state 0 would stay 0. */
-typedef struct sf_xoshiro256pp {
-    uint64_t s[4]; /* not all 0 */
-} sf_xoshiro256pp;
-
-static inline uint64_t sf_xoshiro256pp_next(sf_xoshiro256pp *g) {
-    uint64_t sum = g->s[0] + g->s[3], result = (sum << 23 | sum >> 41) + g->s[0], t = g->s[1] << 17;
-    g->s[2] ^= g->s[0];
-    g->s[3] ^= g->s[1];
-    g->s[1] ^= g->s[2];
-    g->s[0] ^= g->s[3];
-    g->s[2] ^= t;
-    g->s[3] = g->s[3] << 45 | g->s[3] >> 19;
-    return result;
-}
-
-/* Steele, Lea & Flood 2014, SplitMix64: a counter in steps of the golden ratio, mixed. Period
- * 2^64, each 64-bit word once. */
-typedef struct sf_splitmix64 {
-    uint64_t state;
-} sf_splitmix64;
-
-static inline uint64_t sf_splitmix64_next(sf_splitmix64 *g) {
-    return sf_mix64(g->state += UINT64_C(0x9e3779b97f4a7c15));
-}
-
-/* ---- any of them ---- */
-
 /* The generators by number. The numbers may change between releases, the names do not. */
 typedef enum sf_rng_kind {
     SF_RNG_MINSTD = 0,
+    SF_RNG_LCG32,
+    SF_RNG_LCG64,
+    SF_RNG_RANDU,
+    SF_RNG_RAN1,
+    SF_RNG_RAN2,
     SF_RNG_XORSHIFT64,
     SF_RNG_XORSHIFT64_LRL,
     SF_RNG_COMBINED,
+    SF_RNG_MT19937,
+    SF_RNG_MT19937_64,
     SF_RNG_PCG32,
+    SF_RNG_PCG64DXSM,
     SF_RNG_XOSHIRO256PP,
+    SF_RNG_SFC64,
+    SF_RNG_PHILOX4X32,
+    SF_RNG_PHILOX4X64,
     SF_RNG_SPLITMIX64,
     SF_RNG_COUNT
 } sf_rng_kind;
 
+/* Any generator. The union is as large as the Mersenne Twister, 2.6 KB, so that this too is a
+ * value: no heap, no destroy, copied by assignment. The state is last, and no function here
+ * touches more of it than the method has, so that a small generator pays for the size only in
+ * address space, and in assignments (some 40 ns). Where generators are kept by the thousand, keep
+ * the method's own struct (pcg32: 16 bytes). */
 typedef struct sf_rng {
     sf_rng_kind kind;
     uint32_t pending;     /* the high half of a 64-bit draw whose low half was given out */
@@ -141,10 +59,21 @@ typedef struct sf_rng {
     uint64_t spawned;      /* children so far */
     union {
         sf_minstd minstd;
+        sf_lcg32 lcg32;
+        sf_lcg64 lcg64;
+        sf_randu randu;
+        sf_ran1 ran1;
+        sf_ran2 ran2;
         sf_xorshift64 xorshift64; /* both orders */
         sf_combined combined;
+        sf_mt19937 mt19937;
+        sf_mt19937_64 mt19937_64;
         sf_pcg32 pcg32;
+        sf_pcg64dxsm pcg64dxsm;
         sf_xoshiro256pp xoshiro256pp;
+        sf_sfc64 sfc64;
+        sf_philox4x32 philox4x32;
+        sf_philox4x64 philox4x64;
         sf_splitmix64 splitmix64;
     } as;
 } sf_rng;
@@ -157,25 +86,57 @@ const char *sf_rng_description(sf_rng_kind kind);
 /* The generator called `name`; the error lists the names. Thread-safe. */
 sf_status sf_rng_find(const char *name, sf_rng_kind *kind, sf_error *error);
 
-/* Bits in a native draw: 31 (minstd), 32 (pcg32) or 64. 0 for an unknown kind. */
+/* Bits in a native draw: 31 (minstd, randu, ran1, ran2), 32 (lcg32, mt19937, pcg32, philox4x32) or
+ * 64. 0 for an unknown kind. */
 unsigned sf_rng_native_bits(sf_rng_kind kind);
 
 /* Seeds `rng`. With stream 0 a generator is seeded as its reference is, so that published
  * vectors hold:
  *
- *   minstd                      the state is the seed, 1 .. 2^31 - 2
+ *   minstd, ran1                the state is the seed, 1 .. 2^31 - 2
+ *   ran2                        both states are the seed, 1 .. 2147483398
+ *   randu                       the state is the seed, odd, below 2^31
+ *   lcg32, lcg64                the state is the seed, below the modulus; with increment 0 it must
+ *                               share no factor with the modulus, else it must not be a fixed point
  *   xorshift64, xorshift64-lrl  the state is the seed, not 0
  *   combined                    both states are drawn from SplitMix64 of the seed
+ *   mt19937                     init_genrand(seed), below 2^32
+ *   mt19937-64                  init_genrand64(seed)
  *   pcg32                       pcg32_srandom_r(seed, stream): every stream is the method's own;
  *                               stream < 2^63
+ *   pcg64dxsm                   cm_setseq_dxsm_128_64(seed, stream): every stream is its own
  *   xoshiro256++                four draws of SplitMix64 of the seed, as its authors ask
+ *   sfc64                       a = b = c = seed, counter 1, 12 draws thrown away
+ *   philox4x32                  key = seed, counter = stream 2^64: every stream is its own
+ *   philox4x64                  key = (seed, stream), counter = 0: every stream is its own
  *   splitmix64                  the state is the seed
  *
  * Where the method has no streams, stream s > 0 is seeded from sf_hash64(seed, s) reduced to
- * what the method takes: distinct streams are then distinct points of one cycle, and overlap
- * with the probability that chance gives. Refuses a seed that the method cannot take, naming
- * its range; with stream > 0 every seed is taken. */
+ * what the method takes (mt19937, mt19937-64: by init_by_array of seed and stream; sfc64: three
+ * words drawn from SplitMix64 of that hash, then 12 draws thrown away): distinct streams are then
+ * distinct points of one cycle, and overlap with the probability that chance gives. Refuses a
+ * seed that the method cannot take, naming its range; with stream > 0 every seed is taken. */
 sf_status sf_rng_init(sf_rng *rng, sf_rng_kind kind, uint64_t seed, uint64_t stream, sf_error *error);
+
+/* The constants of a general linear congruential generator, lcg32 or lcg64. */
+typedef struct sf_lcg_parameters {
+    uint64_t multiplier; /* 1 .. modulus - 1, without a common factor with it; not 1 if increment = 0 */
+    uint64_t increment;  /* 0 .. modulus - 1 */
+    uint64_t modulus;    /* lcg32: 2 .. 2^32; lcg64: 2^32 + 1 .. 2^64 - 1, or 0 for 2^64 */
+} sf_lcg_parameters;
+
+/* The constants that sf_rng_init gives lcg32 and lcg64 (see sf_lcg32, sf_lcg64). */
+sf_lcg_parameters sf_lcg_parameters_default(sf_rng_kind kind);
+
+/* sf_rng_init for lcg32 and lcg64 with constants of your own. Constants under which the sequence
+ * would collapse to few states are refused; those that are merely bad are not. A draw is the
+ * state; floats come from state / modulus (see the fills). Children and streams keep the
+ * constants. */
+sf_status sf_rng_init_lcg(sf_rng *rng, sf_rng_kind kind, const sf_lcg_parameters *parameters, uint64_t seed,
+                          uint64_t stream, sf_error *error);
+
+/* Starts again, as sf_rng_init or sf_rng_init_lcg did; children are counted from 0 again. */
+void sf_rng_reset(sf_rng *rng);
 
 /* The next native draw, in 31, 32 or 64 bits. */
 uint64_t sf_rng_next_raw(sf_rng *rng);
@@ -190,6 +151,10 @@ uint64_t sf_rng_next_raw(sf_rng *rng);
  * f64  in [0,1): the top 53 bits of a 64-bit draw; from two draws a, b of 31 or 32 bits, the top
  *      27 bits of a above the top 26 of b (genrand_res53 of the Mersenne Twister's authors)
  *
+ * Draws x of lcg32 and lcg64 with a modulus m other than 2^32 and 2^64 become floats as
+ * x 2^32 / m and x 2^64 / m, rounded down, would, one draw of lcg64 to a float of either kind;
+ * u32 and u64 give x itself.
+ *
  * u64 and f64 leave a waiting half where it is, as NumPy's generators do. Cannot fail. */
 void sf_rng_fill_u32(sf_rng *rng, size_t count, uint32_t *out);
 void sf_rng_fill_u64(sf_rng *rng, size_t count, uint64_t *out);
@@ -197,29 +162,23 @@ void sf_rng_fill_f32(sf_rng *rng, size_t count, float *out);
 void sf_rng_fill_f64(sf_rng *rng, size_t count, double *out);
 
 /* One value of the fill of that name. */
-static inline uint32_t sf_rng_next_u32(sf_rng *rng) {
-    uint32_t value;
-    sf_rng_fill_u32(rng, 1, &value);
-    return value;
-}
-static inline uint64_t sf_rng_next_u64(sf_rng *rng) {
-    uint64_t value;
-    sf_rng_fill_u64(rng, 1, &value);
-    return value;
-}
-static inline float sf_rng_next_f32(sf_rng *rng) {
-    float value;
-    sf_rng_fill_f32(rng, 1, &value);
-    return value;
-}
-static inline double sf_rng_next_f64(sf_rng *rng) {
-    double value;
-    sf_rng_fill_f64(rng, 1, &value);
-    return value;
-}
+uint32_t sf_rng_next_u32(sf_rng *rng);
+uint64_t sf_rng_next_u64(sf_rng *rng);
+float sf_rng_next_f32(sf_rng *rng);
+double sf_rng_next_f64(sf_rng *rng);
 
-/* Passes over `count` native draws in O(log count), and drops a waiting half word.
- * SF_STATUS_UNSUPPORTED, with `rng` unchanged, for a method that has no such skip. */
+/* Words of which every bit is random, for algorithms that need them, such as NumPy's
+ * distributions: of 31-bit methods the top 16 bits of two draws; of lcg32 and lcg64 with another
+ * modulus the fractions that floats are made of. 64 bits from methods of 31 and 32 are two such
+ * words, the first in the high half, as NumPy composes those of its MT19937. */
+uint32_t sf_rng_next_full32(sf_rng *rng);
+uint64_t sf_rng_next_full64(sf_rng *rng);
+
+/* Passes over `count` native draws, and drops a waiting half word. Takes O(log count) steps: less
+ * than a microsecond for methods that count or are congruential, some 100 µs for those that are
+ * linear over bits, some 10 ms for the Mersenne Twisters (which walk up to 2^21 draws instead).
+ * SF_STATUS_UNSUPPORTED, with `rng` unchanged, for ran1, ran2 (their tables depend on all draws
+ * before) and sfc64 (no closed form is known). */
 sf_status sf_rng_skip(sf_rng *rng, uint64_t count, sf_error *error);
 
 /* Makes `count` independent generators of the parent's kind: child number k (counted over the
