@@ -14,7 +14,7 @@
 #include <time.h>
 
 #if defined(__x86_64__)
-#include <xmmintrin.h>
+#include <immintrin.h>
 #endif
 
 #define SF_RESTRICT restrict
@@ -78,6 +78,31 @@ static inline void sf_atomic_store(sf_atomic_size *a, size_t value) {
 }
 static inline size_t sf_atomic_load(const sf_atomic_size *a) {
     return __atomic_load_n(&a->value, __ATOMIC_ACQUIRE);
+}
+
+/* Lanes of 64 bits, as many as a register of this translation unit's instruction set has, with the
+ * operators of their elements: for kernels whose values must stay in registers from round to
+ * round, where loops over arrays would go through memory. */
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+enum { SF_LANES64 = 8 };
+#elif defined(__AVX2__)
+enum { SF_LANES64 = 4 };
+#else
+enum { SF_LANES64 = 2 };
+#endif
+typedef uint64_t sf_lanes64 __attribute__((vector_size(8 * SF_LANES64)));
+
+/* The products of the low 32 bits of the lanes. */
+static inline sf_lanes64 sf_lanes64_multiply32(sf_lanes64 a, sf_lanes64 b) {
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+    return (sf_lanes64)_mm512_mul_epu32((__m512i)a, (__m512i)b);
+#elif defined(__AVX2__)
+    return (sf_lanes64)_mm256_mul_epu32((__m256i)a, (__m256i)b);
+#elif defined(__x86_64__)
+    return (sf_lanes64)_mm_mul_epu32((__m128i)a, (__m128i)b);
+#else
+    return (a & 0xffffffffu) * (b & 0xffffffffu);
+#endif
 }
 
 /* How many bits of x are 1. */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "platform.h"
+#include "rng_lanes.h"
 #include "rng_xoshiro_lanes.h"
 
 /* ---- floats ---- */
@@ -75,66 +76,6 @@ static void mt19937_64_temper(size_t count, const uint64_t *SF_RESTRICT words, u
         x ^= (x << 37) & UINT64_C(0xfff7eee000000000);
         out[i] = x ^ x >> 43;
     }
-}
-
-/* ---- Philox ---- */
-
-enum { LANES = 8 };
-
-/* Eight counters in a row side by side, with words of 32 bits kept in 64, as products are. */
-static void philox4x32_lanes(uint64_t first, const uint32_t *high, const uint32_t *key, uint32_t *SF_RESTRICT out) {
-    const uint64_t low = 0xffffffffu;
-    uint64_t x0[LANES], x1[LANES], x2[LANES], x3[LANES];
-    uint32_t k0 = key[0], k1 = key[1];
-    for (int l = 0; l < LANES; ++l) {
-        x0[l] = (first + (unsigned)l) & low;
-        x1[l] = (first + (unsigned)l) >> 32;
-        x2[l] = high[0];
-        x3[l] = high[1];
-    }
-    for (int round = 0; round < 10; ++round) {
-        for (int l = 0; l < LANES; ++l) {
-            uint64_t p = UINT64_C(0xd2511f53) * x0[l], q = UINT64_C(0xcd9e8d57) * x2[l];
-            x0[l] = q >> 32 ^ x1[l] ^ k0;
-            x2[l] = p >> 32 ^ x3[l] ^ k1;
-            x1[l] = q & low;
-            x3[l] = p & low;
-        }
-        k0 += 0x9e3779b9u;
-        k1 += 0xbb67ae85u;
-    }
-    for (int l = 0; l < LANES; ++l) {
-        out[4 * l] = (uint32_t)x0[l];
-        out[4 * l + 1] = (uint32_t)x1[l];
-        out[4 * l + 2] = (uint32_t)x2[l];
-        out[4 * l + 3] = (uint32_t)x3[l];
-    }
-}
-
-static void philox4x32(const uint32_t *counter, const uint32_t *key, size_t blocks, uint32_t *SF_RESTRICT out) {
-    uint64_t first = (uint64_t)counter[1] << 32 | counter[0];
-    size_t done = 0;
-    for (; blocks - done >= LANES; done += LANES) philox4x32_lanes(first + done, counter + 2, key, out + 4 * done);
-    for (; done < blocks; ++done) {
-        uint64_t n = first + done;
-        const uint32_t now[4] = {(uint32_t)n, (uint32_t)(n >> 32), counter[2], counter[3]};
-        sf_philox4x32_block(now, key, out + 4 * done);
-    }
-}
-
-static void philox4x64(const uint64_t *counter, const uint64_t *key, size_t blocks, uint64_t *SF_RESTRICT out) {
-    for (size_t i = 0; i < blocks; ++i) {
-        const uint64_t now[4] = {counter[0] + i, counter[1], counter[2], counter[3]};
-        sf_philox4x64_block(now, key, out + 4 * i);
-    }
-}
-
-/* ---- PCG64 DXSM ---- */
-
-static void pcg64dxsm(sf_pcg64dxsm *state, size_t count, uint64_t *SF_RESTRICT out) {
-    sf_pcg64dxsm g = *state;
-    for (size_t i = 0; i < count; ++i) out[i] = sf_pcg64dxsm_next(&g);
-    *state = g;
 }
 
 /* ---- xoshiro256++ ---- */

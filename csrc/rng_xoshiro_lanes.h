@@ -8,6 +8,7 @@
 
 #include <string.h>
 
+#include "platform.h"
 #include "rng_kernels.h"
 
 enum {
@@ -28,31 +29,36 @@ static const uint64_t xoshiro_jumps[4][4] = {
      UINT64_C(0x3972a4b76a145204)},
 };
 
+/* Lane l of the eight, in as many registers as they take. */
+enum { XOSHIRO_PARTS = XOSHIRO_LANES / SF_LANES64 };
+
 typedef struct xoshiro_lanes {
-    uint64_t s[4][XOSHIRO_LANES];
+    sf_lanes64 s[4][XOSHIRO_PARTS];
 } xoshiro_lanes;
 
 static inline void xoshiro_step(xoshiro_lanes *g, uint64_t out[XOSHIRO_LANES]) {
-    for (int l = 0; l < XOSHIRO_LANES; ++l) {
-        uint64_t s0 = g->s[0][l], s1 = g->s[1][l], s2 = g->s[2][l], s3 = g->s[3][l], sum = s0 + s3;
-        out[l] = (sum << 23 | sum >> 41) + s0;
+    for (int p = 0; p < XOSHIRO_PARTS; ++p) {
+        sf_lanes64 s0 = g->s[0][p], s1 = g->s[1][p], s2 = g->s[2][p], s3 = g->s[3][p], sum = s0 + s3;
+        sf_lanes64 result = (sum << 23 | sum >> 41) + s0;
+        memcpy(out + SF_LANES64 * p, &result, sizeof result);
         s2 ^= s0;
         s3 ^= s1;
-        g->s[1][l] = s1 ^ s2;
-        g->s[0][l] = s0 ^ s3;
-        g->s[2][l] = s2 ^ s1 << 17;
-        g->s[3][l] = s3 << 45 | s3 >> 19;
+        g->s[1][p] = s1 ^ s2;
+        g->s[0][p] = s0 ^ s3;
+        g->s[2][p] = s2 ^ s1 << 17;
+        g->s[3][p] = s3 << 45 | s3 >> 19;
     }
 }
 
 /* Advances all lanes by what the polynomial stands for (see sf_linear_skip). */
 static void xoshiro_jump(xoshiro_lanes *g, const uint64_t polynomial[4]) {
-    xoshiro_lanes walk = *g, sum = {{{0}}};
+    xoshiro_lanes walk = *g, sum;
+    memset(&sum, 0, sizeof sum);
     uint64_t unused[XOSHIRO_LANES];
     for (int bit = 0; bit < 256; ++bit) {
         uint64_t take = -(polynomial[bit / 64] >> (bit % 64) & 1);
         for (int i = 0; i < 4; ++i)
-            for (int l = 0; l < XOSHIRO_LANES; ++l) sum.s[i][l] ^= walk.s[i][l] & take;
+            for (int p = 0; p < XOSHIRO_PARTS; ++p) sum.s[i][p] ^= walk.s[i][p] & take;
         xoshiro_step(&walk, unused);
     }
     *g = sum;
@@ -60,15 +66,18 @@ static void xoshiro_jump(xoshiro_lanes *g, const uint64_t polynomial[4]) {
 
 /* Lane l starts l eighths of a chunk from `g`: jump by 1, 2 and 4 eighths as the bits of l say. */
 static void xoshiro_spread(const sf_xoshiro256pp *g, xoshiro_lanes *lanes) {
+    uint64_t words[4][XOSHIRO_LANES], jumped_words[4][XOSHIRO_LANES];
     for (int i = 0; i < 4; ++i)
-        for (int l = 0; l < XOSHIRO_LANES; ++l) lanes->s[i][l] = g->s[i];
+        for (int l = 0; l < XOSHIRO_LANES; ++l) words[i][l] = g->s[i];
     for (int k = 0; k < 3; ++k) {
-        xoshiro_lanes jumped = *lanes;
-        xoshiro_jump(&jumped, xoshiro_jumps[k]);
+        memcpy(lanes, words, sizeof words);
+        xoshiro_jump(lanes, xoshiro_jumps[k]);
+        memcpy(jumped_words, lanes, sizeof words);
         for (int i = 0; i < 4; ++i)
             for (int l = 0; l < XOSHIRO_LANES; ++l)
-                if (l >> k & 1) lanes->s[i][l] = jumped.s[i][l];
+                if (l >> k & 1) words[i][l] = jumped_words[i][l];
     }
+    memcpy(lanes, words, sizeof words);
 }
 
 /* `count` draws in the form asked for, 8 bytes each. */
@@ -118,7 +127,9 @@ static inline size_t xoshiro_fill_lanes(sf_xoshiro256pp *g, size_t count, sf_rng
         else
             xoshiro_fill_chunk(&lanes, SF_RNG_F32, place);
     }
-    for (int i = 0; i < 4; ++i) g->s[i] = lanes.s[i][XOSHIRO_LANES - 1];
+    uint64_t words[4][XOSHIRO_LANES];
+    memcpy(words, &lanes, sizeof words);
+    for (int i = 0; i < 4; ++i) g->s[i] = words[i][XOSHIRO_LANES - 1];
     return chunks * XOSHIRO_CHUNK;
 }
 

@@ -51,10 +51,10 @@ void call(Function &&function) {
 
 // A C struct that threads share, and the lock by which they take turns. The lock is only ever
 // taken without the GIL, so that neither can wait for the other.
-template <class T>
+template <class T, class Mutex = std::mutex>
 struct shared {
     T value;
-    std::mutex turn;
+    Mutex turn;
 
     explicit shared(const T &initial) : value(initial) {}
 
@@ -62,7 +62,7 @@ struct shared {
     template <class Function>
     void use(Function &&function) {
         call([&](sf_error *error) {
-            std::lock_guard<std::mutex> lock(turn);
+            std::lock_guard<Mutex> lock(turn);
             return function(&value, error);
         });
     }

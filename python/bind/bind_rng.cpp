@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,13 +14,42 @@
 
 namespace {
 
-using generator = shared<sf_rng>;
+// NumPy's bitgen_t, of which a capsule called "BitGenerator" holds a pointer
+// (numpy/random/bitgen.h).
+struct bitgen {
+    void *state;
+    uint64_t (*next_uint64)(void *);
+    uint32_t (*next_uint32)(void *);
+    double (*next_double)(void *);
+    uint64_t (*next_raw)(void *);
+};
+
+uint64_t next_uint64(void *rng) { return sf_rng_next_full64(static_cast<sf_rng *>(rng)); }
+uint32_t next_uint32(void *rng) { return sf_rng_next_full32(static_cast<sf_rng *>(rng)); }
+double next_double(void *rng) { return sf_rng_next_f64(static_cast<sf_rng *>(rng)); }
+uint64_t next_raw(void *rng) { return sf_rng_next_raw(static_cast<sf_rng *>(rng)); }
+
+// The lock may be taken again by the thread that has it: NumPy shuffles lists under it, and what a
+// list's items do may draw.
+struct generator : shared<sf_rng, std::recursive_mutex> {
+    bitgen functions;
+
+    explicit generator(const sf_rng &rng)
+        : shared(rng), functions{&value, next_uint64, next_uint32, next_double, next_raw} {}
+};
 
 sf_rng_kind find(const std::string &name) {
     sf_rng_kind kind;
     sf_error error;
     raise_unless_ok(sf_rng_find(name.c_str(), &kind, &error), error);
     return kind;
+}
+
+// An LCG's constants; those not given are the kind's own.
+sf_lcg_parameters constants(sf_rng_kind kind, std::optional<uint64_t> a, std::optional<uint64_t> c,
+                            std::optional<uint64_t> m) {
+    sf_lcg_parameters p = sf_lcg_parameters_default(kind);
+    return {a.value_or(p.multiplier), c.value_or(p.increment), m.value_or(p.modulus)};
 }
 
 template <class T, void (*Fill)(sf_rng *, size_t, T *)>
@@ -37,13 +68,18 @@ void bind_rng(nb::module_ &m) {
     nb::class_<generator>(m, "Rng")
         .def(
             "__init__",
-            [](generator *self, const std::string &name, uint64_t seed, uint64_t stream) {
+            [](generator *self, const std::string &name, uint64_t seed, uint64_t stream, std::optional<uint64_t> a,
+               std::optional<uint64_t> c, std::optional<uint64_t> m) {
                 sf_rng rng;
                 sf_error error;
-                raise_unless_ok(sf_rng_init(&rng, find(name), seed, stream, &error), error);
+                sf_rng_kind kind = find(name);
+                sf_lcg_parameters p = constants(kind, a, c, m);
+                raise_unless_ok(a || c || m ? sf_rng_init_lcg(&rng, kind, &p, seed, stream, &error)
+                                            : sf_rng_init(&rng, kind, seed, stream, &error),
+                                error);
                 new (self) generator(rng);
             },
-            "name"_a, "seed"_a, "stream"_a)
+            "name"_a, "seed"_a, "stream"_a, "a"_a = nb::none(), "c"_a = nb::none(), "m"_a = nb::none())
         .def_prop_ro("name", [](generator &g) { return sf_rng_name(g.value.kind); })
         .def_prop_ro("seed", [](generator &g) { return g.value.seed; })
         .def_prop_ro("stream", [](generator &g) { return g.value.stream; })
@@ -53,8 +89,9 @@ void bind_rng(nb::module_ &m) {
         .def("fill", &fill<double, sf_rng_fill_f64>, "out"_a.noconvert())
         .def("reset",
              [](generator &g) {
-                 g.use([](sf_rng *rng, sf_error *error) {
-                     return sf_rng_init(rng, rng->kind, rng->seed, rng->stream, error);
+                 g.use([](sf_rng *rng, sf_error *) {
+                     sf_rng_reset(rng);
+                     return SF_STATUS_OK;
                  });
              })
         .def(
@@ -66,14 +103,15 @@ void bind_rng(nb::module_ &m) {
         .def(
             "spawn",
             [](generator &g, size_t count) {
-                std::vector<sf_rng> children(count);
-                g.use([&](sf_rng *rng, sf_error *) {
-                    sf_rng_spawn(rng, count, children.data());
-                    return SF_STATUS_OK;
-                });
                 nb::typed<nb::list, generator> list;
-                for (const sf_rng &child : children)
+                for (size_t i = 0; i < count; ++i) {
+                    sf_rng child;
+                    g.use([&](sf_rng *rng, sf_error *) {
+                        sf_rng_spawn(rng, 1, &child);
+                        return SF_STATUS_OK;
+                    });
                     list.append(nb::cast(new generator(child), nb::rv_policy::take_ownership));
+                }
                 return list;
             },
             "count"_a)
@@ -84,7 +122,32 @@ void bind_rng(nb::module_ &m) {
                 return SF_STATUS_OK;
             });
             return words;
-        });
+        })
+        .def(
+            "set_state",
+            [](generator &g, const std::vector<uint64_t> &words) {
+                g.use([&](sf_rng *rng, sf_error *error) {
+                    return sf_rng_set_state(rng, rng->kind, words.data(), words.size(), error);
+                });
+            },
+            "words"_a)
+        .def("next_raw",
+             [](generator &g) {
+                 uint64_t draw = 0;
+                 g.use([&](sf_rng *rng, sf_error *) {
+                     draw = sf_rng_next_raw(rng);
+                     return SF_STATUS_OK;
+                 });
+                 return draw;
+             })
+        .def("lock",
+             [](generator &g) {
+                 nb::gil_scoped_release released;
+                 g.turn.lock();
+             })
+        .def("unlock", [](generator &g) { g.turn.unlock(); })
+        // The pointer is good for as long as the generator is.
+        .def("capsule", [](generator &g) { return nb::capsule(&g.functions, "BitGenerator"); });
 
     m.def(
         "rng_from_state",

@@ -8,7 +8,7 @@ from __future__ import annotations
 import secrets
 import time
 from collections.abc import Mapping, Sequence
-from typing import Any, overload
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
@@ -16,12 +16,23 @@ from numpy.typing import DTypeLike, NDArray
 from sunfleck import _core
 from sunfleck._arguments import integer, one_of, output_array, shape_of, text
 
+if TYPE_CHECKING:
+    from sunfleck.bit_generator import BitGenerator
+
 __all__ = ["RNGS", "Rng"]
 
 Shape = int | Sequence[int]
 
 RNGS: dict[str, str] = _core.rngs()
 """The generators: name → one line about it."""
+
+
+def modulus(m: Any) -> int:
+    """A modulus as C takes it, which has 0 for 2^64."""
+    number = integer("m", m, bits=65)
+    if not 2 <= number <= 1 << 64:
+        raise ValueError(f"m is {number}; a modulus is 2 to 2^64")
+    return number & ((1 << 64) - 1)
 
 
 class Rng:
@@ -36,6 +47,10 @@ class Rng:
         a seed that its method can't take. None: from the clock and the system, kept in ``seed``.
     stream : int
         In [0, 2^64). Distinct streams of one seed are independent sequences.
+    a, c, m : int, optional
+        For ``lcg32`` and ``lcg64`` alone: x = a x + c mod m, with m up to 2^32 and 2^64. Those not
+        given are Knuth's (see ``docs/rng.md``); constants under which the sequence collapses are
+        refused.
 
     Attributes
     ----------
@@ -45,7 +60,8 @@ class Rng:
     Raises
     ------
     ValueError
-        An unknown name, or a seed or stream that the method can't take; its range is named.
+        An unknown name, or a seed, stream or constant that the method can't take; what it takes is
+        named.
 
     Notes
     -----
@@ -67,16 +83,37 @@ class Rng:
 
     _generator: _core.Rng
 
-    def __init__(self, name: str, seed: int | None = None, stream: int = 0) -> None:
+    def __init__(
+        self,
+        name: str,
+        seed: int | None = None,
+        stream: int = 0,
+        *,
+        a: int | None = None,
+        c: int | None = None,
+        m: int | None = None,
+    ) -> None:
+        text("name", name)
         stream = integer("stream", stream)
+        constants = {
+            "a": None if a is None else integer("a", a),
+            "c": None if c is None else integer("c", c),
+            "m": None if m is None else modulus(m),
+        }
         if seed is not None:
-            self._generator = _core.Rng(text("name", name), integer("seed", seed), stream)
+            self._generator = _core.Rng(name, integer("seed", seed), stream, **constants)
             return
         mixed = secrets.randbits(64) ^ time.time_ns()
-        try:
-            self._generator = _core.Rng(text("name", name), mixed or 1, stream)
-        except ValueError:  # a method of 31 bits; or a bad name or stream, which this reports again
-            self._generator = _core.Rng(name, 1 + mixed % (1 << 30), stream)
+        candidates = [mixed | 1, mixed >> 33 | 1]  # the second for methods of 31 bits
+        if m is not None:
+            candidates += [(mixed >> k) % m for k in range(32)]
+        for number in candidates:
+            try:
+                self._generator = _core.Rng(name, number, stream, **constants)
+                return
+            except ValueError:
+                pass
+        self._generator = _core.Rng(name, 1, stream, **constants)  # reports a bad name, stream or constant
 
     @property
     def name(self) -> str:
@@ -183,7 +220,7 @@ class Rng:
         Raises
         ------
         NotImplementedError
-            The method has no such skip; the generator is as it was.
+            The method has no such skip (ran1, ran2, sfc64); the generator is as it was.
 
         Examples
         --------
@@ -210,6 +247,24 @@ class Rng:
         False
         """
         return [Rng._wrap(core) for core in self._generator.spawn(integer("count", count, bits=31))]
+
+    @property
+    def bit_generator(self) -> BitGenerator:
+        """This generator, for `numpy.random.Generator` and what takes one.
+
+        Draws through it and through the `Rng` are one sequence.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import sunfleck as sf
+        >>> rng = sf.Rng("philox4x32", seed=1)
+        >>> int(np.random.Generator(rng.bit_generator).integers(6)) in range(6)
+        True
+        """
+        from sunfleck.bit_generator import BitGenerator  # brings numpy.random, which is not light
+
+        return BitGenerator(self)
 
     @property
     def state(self) -> dict[str, Any]:

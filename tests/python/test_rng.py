@@ -16,6 +16,8 @@ import sunfleck as sf
 NAMES = sorted(sf.RNGS)
 # A seed that every method takes.
 SEED = 12345
+NARROW = {"minstd", "lcg32", "randu", "ran1", "ran2", "mt19937", "pcg32", "philox4x32"}  # draws of 31 or 32 bits
+WITHOUT_SKIP = {"ran1", "ran2", "sfc64"}
 
 
 def test_descriptions_are_one_line_each() -> None:
@@ -114,7 +116,7 @@ def test_out_that_would_need_a_copy_is_refused_and_draws_nothing(out: Any, error
 
 @pytest.mark.parametrize("name", NAMES)
 def test_streams_and_seeds_differ(name: str) -> None:
-    words = {sf.Rng(name, seed=seed, stream=stream).bits(dtype="uint64") for seed in (1, 2) for stream in range(5)}
+    words = {sf.Rng(name, seed=seed, stream=stream).bits(dtype="uint64") for seed in (1, 3) for stream in range(5)}
     assert len(words) == 10
 
 
@@ -137,7 +139,7 @@ def test_reset_starts_again(name: str) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_skip_passes_over_draws_or_says_that_it_cannot(name: str) -> None:
     drawn, skipped = sf.Rng(name, seed=SEED), sf.Rng(name, seed=SEED)
-    drawn.bits(1000, dtype="uint32" if name in ("minstd", "pcg32") else "uint64")
+    drawn.bits(1000, dtype="uint32" if name in NARROW else "uint64")
     try:
         skipped.skip(1000)
     except NotImplementedError:

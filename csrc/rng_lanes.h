@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* Generators that can be drawn several steps at once, a step to a lane of a register, because
+ * their state n steps on is known at once: Philox counts, PCG is congruential. Only rng_kernels.c
+ * includes it. */
+#ifndef SUNFLECK_RNG_LANES_H
+#define SUNFLECK_RNG_LANES_H
+
+#include <string.h>
+
+#include "platform.h"
+#include "rng_kernels.h"
+
+static inline sf_lanes64 all_lanes(uint64_t x) { return x - (sf_lanes64){0}; }
+
+/* 0, 1, 2, … */
+static inline sf_lanes64 lane_numbers(void) {
+    uint64_t numbers[SF_LANES64];
+    sf_lanes64 result;
+    for (int l = 0; l < SF_LANES64; ++l) numbers[l] = (uint64_t)l;
+    memcpy(&result, numbers, sizeof result);
+    return result;
+}
+
+/* sf_multiply_high64_by_halves. */
+static inline sf_lanes64 multiply_high(sf_lanes64 a, uint64_t b) {
+    sf_lanes64 low = all_lanes(b & 0xffffffffu), high = all_lanes(b >> 32), a1 = a >> 32;
+    sf_lanes64 middle = sf_lanes64_multiply32(a1, low) + (sf_lanes64_multiply32(a, low) >> 32);
+    sf_lanes64 rest = sf_lanes64_multiply32(a, high) + (middle & 0xffffffffu);
+    return sf_lanes64_multiply32(a1, high) + (middle >> 32) + (rest >> 32);
+}
+
+/* Registers of counters that go through Philox's rounds together: each round waits for products of
+ * the one before, and a second register fills the wait. */
+enum { PHILOX_SETS = 2, PHILOX_BLOCKS = PHILOX_SETS * SF_LANES64 };
+
+/* ---- Philox 4x32 ---- */
+
+/* Words of 32 bits live in lanes of 64, where products are; what is above them is never read. */
+static inline void philox4x32_rounds(sf_lanes64 x[PHILOX_SETS][4], const uint32_t key[2]) {
+    const sf_lanes64 a = all_lanes(0xd2511f53u), b = all_lanes(0xcd9e8d57u);
+    uint32_t k0 = key[0], k1 = key[1];
+    for (int round = 0; round < 10; ++round) {
+        for (int s = 0; s < PHILOX_SETS; ++s) {
+            sf_lanes64 p = sf_lanes64_multiply32(a, x[s][0]), q = sf_lanes64_multiply32(b, x[s][2]);
+            x[s][0] = q >> 32 ^ x[s][1] ^ k0;
+            x[s][2] = p >> 32 ^ x[s][3] ^ k1;
+            x[s][1] = q;
+            x[s][3] = p;
+        }
+        k0 += 0x9e3779b9u;
+        k1 += 0xbb67ae85u;
+    }
+}
+
+/* The blocks of one register, in order. */
+static inline void philox4x32_store(const sf_lanes64 x[4], uint32_t *SF_RESTRICT out) {
+    /* Two words to a lane, then the lanes of both in turn. */
+    sf_lanes64 halves[2] = {(x[0] & 0xffffffffu) | x[1] << 32, (x[2] & 0xffffffffu) | x[3] << 32};
+    uint64_t pairs[2][SF_LANES64];
+    memcpy(pairs, halves, sizeof pairs);
+    for (int l = 0; l < SF_LANES64; ++l)
+        for (int h = 0; h < 2; ++h) {
+            out[4 * l + 2 * h] = (uint32_t)pairs[h][l];
+            out[4 * l + 2 * h + 1] = (uint32_t)(pairs[h][l] >> 32);
+        }
+}
+
+static void philox4x32(const uint32_t *counter, const uint32_t *key, size_t blocks, uint32_t *SF_RESTRICT out) {
+    uint64_t first = (uint64_t)counter[1] << 32 | counter[0];
+    size_t done = 0;
+    for (; blocks - done >= PHILOX_BLOCKS; done += PHILOX_BLOCKS) {
+        sf_lanes64 x[PHILOX_SETS][4];
+        for (int s = 0; s < PHILOX_SETS; ++s) {
+            sf_lanes64 n = all_lanes(first + done + (uint64_t)(s * SF_LANES64)) + lane_numbers();
+            x[s][0] = n;
+            x[s][1] = n >> 32;
+            x[s][2] = all_lanes(counter[2]);
+            x[s][3] = all_lanes(counter[3]);
+        }
+        philox4x32_rounds(x, key);
+        for (int s = 0; s < PHILOX_SETS; ++s) philox4x32_store(x[s], out + 4 * (done + (size_t)(s * SF_LANES64)));
+    }
+    for (; done < blocks; ++done) {
+        uint64_t n = first + done;
+        const uint32_t now[4] = {(uint32_t)n, (uint32_t)(n >> 32), counter[2], counter[3]};
+        sf_philox4x32_block(now, key, out + 4 * done);
+    }
+}
+
+/* ---- Philox 4x64 ---- */
+
+#if defined(__AVX512DQ__) /* with fewer lanes, four products to a product are no gain */
+static inline void philox4x64_rounds(sf_lanes64 x[PHILOX_SETS][4], const uint64_t key[2]) {
+    const uint64_t a = UINT64_C(0xd2e7470ee14c6c93), b = UINT64_C(0xca5a826395121157);
+    uint64_t k0 = key[0], k1 = key[1];
+    for (int round = 0; round < 10; ++round) {
+        for (int s = 0; s < PHILOX_SETS; ++s) {
+            sf_lanes64 p = multiply_high(x[s][0], a), q = multiply_high(x[s][2], b);
+            sf_lanes64 y1 = x[s][2] * b, y3 = x[s][0] * a;
+            x[s][0] = q ^ x[s][1] ^ k0;
+            x[s][2] = p ^ x[s][3] ^ k1;
+            x[s][1] = y1;
+            x[s][3] = y3;
+        }
+        k0 += UINT64_C(0x9e3779b97f4a7c15);
+        k1 += UINT64_C(0xbb67ae8584caa73b);
+    }
+}
+
+/* Whole groups of PHILOX_BLOCKS; returns how many blocks they are. */
+static size_t philox4x64_lanes(const uint64_t *counter, const uint64_t *key, size_t blocks,
+                               uint64_t *SF_RESTRICT out) {
+    size_t done = 0;
+    for (; blocks - done >= PHILOX_BLOCKS; done += PHILOX_BLOCKS) {
+        sf_lanes64 x[PHILOX_SETS][4];
+        for (int s = 0; s < PHILOX_SETS; ++s) {
+            x[s][0] = all_lanes(counter[0] + done + (uint64_t)(s * SF_LANES64)) + lane_numbers();
+            for (int w = 1; w < 4; ++w) x[s][w] = all_lanes(counter[w]);
+        }
+        philox4x64_rounds(x, key);
+        uint64_t words[PHILOX_SETS][4][SF_LANES64];
+        memcpy(words, x, sizeof words);
+        for (size_t s = 0; s < PHILOX_SETS; ++s)
+            for (size_t l = 0; l < SF_LANES64; ++l)
+                for (size_t w = 0; w < 4; ++w) out[4 * (done + s * SF_LANES64 + l) + w] = words[s][w][l];
+    }
+    return done;
+}
+#endif
+
+static void philox4x64(const uint64_t *counter, const uint64_t *key, size_t blocks, uint64_t *SF_RESTRICT out) {
+    size_t done = 0;
+#if defined(__AVX512DQ__)
+    done = philox4x64_lanes(counter, key, blocks, out);
+#endif
+    for (; done < blocks; ++done) {
+        const uint64_t now[4] = {counter[0] + done, counter[1], counter[2], counter[3]};
+        sf_philox4x64_block(now, key, out + 4 * done);
+    }
+}
+
+/* ---- PCG64 DXSM ---- */
+
+#if defined(__AVX512DQ__)
+/* Draws a multiple of SF_LANES64: lane l starts l steps on, and each goes SF_LANES64 steps at once,
+ * by the map x -> A x + C that they compose to (Brown 1994). */
+static size_t pcg64dxsm_lanes(sf_pcg64dxsm *state, size_t count, uint64_t *SF_RESTRICT out) {
+    sf_pcg64dxsm g = *state, a = {0, 1, 0, 0}, c = {0, 0, g.increment_high, g.increment_low};
+    uint64_t starts[2][SF_LANES64];
+    for (int l = 0; l < SF_LANES64; ++l) {
+        starts[0][l] = g.state_high;
+        starts[1][l] = g.state_low;
+        sf_pcg64dxsm_step(&g);
+        sf_pcg64dxsm_step(&a);
+        sf_pcg64dxsm_step(&c);
+    }
+    sf_lanes64 high, low;
+    memcpy(&high, starts[0], sizeof high);
+    memcpy(&low, starts[1], sizeof low);
+    size_t done = 0;
+    for (; count - done >= SF_LANES64; done += SF_LANES64) {
+        sf_lanes64 x = (high ^ high >> 32) * SF_PCG64_CHEAP_MULTIPLIER;
+        x = (x ^ x >> 48) * (low | 1);
+        memcpy(out + done, &x, sizeof x);
+        high = high * a.state_low + low * a.state_high + multiply_high(low, a.state_low);
+        low = low * a.state_low + c.state_low;
+        high = high + c.state_high - (sf_lanes64)(low < c.state_low); /* true is all bits, -1 */
+    }
+    memcpy(starts[0], &high, sizeof high);
+    memcpy(starts[1], &low, sizeof low);
+    state->state_high = starts[0][0];
+    state->state_low = starts[1][0];
+    return done;
+}
+#endif
+
+static void pcg64dxsm(sf_pcg64dxsm *state, size_t count, uint64_t *SF_RESTRICT out) {
+    size_t done = 0;
+#if defined(__AVX512DQ__)
+    if (count >= 64) done = pcg64dxsm_lanes(state, count, out);
+#endif
+    sf_pcg64dxsm g = *state;
+    for (; done < count; ++done) out[done] = sf_pcg64dxsm_next(&g);
+    *state = g;
+}
+
+#endif
