@@ -20,9 +20,42 @@ NARROW = {"minstd", "lcg32", "randu", "ran1", "ran2", "mt19937", "pcg32", "philo
 WITHOUT_SKIP = {"ran1", "ran2", "sfc64"}
 
 
-def test_descriptions_are_one_line_each() -> None:
-    assert {"minstd", "xorshift64", "xorshift64-lrl", "combined", "pcg32", "xoshiro256++", "splitmix64"} <= set(sf.RNGS)
+def test_there_are_these_and_descriptions_are_one_line_each() -> None:
+    congruential = ["minstd", "lcg32", "lcg64", "randu", "ran1", "ran2"]
+    linear = ["xorshift64", "xorshift64-lrl", "combined", "mt19937", "mt19937-64"]
+    todays = ["pcg32", "pcg64dxsm", "xoshiro256++", "sfc64", "philox4x32", "philox4x64", "splitmix64"]
+    assert list(sf.RNGS) == congruential + linear + todays
     assert all(text and "\n" not in text for text in sf.RNGS.values())
+
+
+@pytest.mark.parametrize(
+    ("name", "a", "c", "m"),
+    [
+        ("lcg32", 16807, 0, 2**31 - 1),
+        ("lcg32", 69069, 1, 2**32),
+        ("lcg32", 5, 3, 17),
+        ("lcg64", 0x5DEECE66D, 11, 2**48),
+        ("lcg64", 37, 0, 2**61 - 1),
+        ("lcg64", 2862933555777941757, 3037000493, 2**64),
+        ("lcg64", 2**64 - 61, 2**64 - 60, 2**64 - 59),
+    ],
+)
+def test_lcgs_follow_their_rule(name: str, a: int, c: int, m: int) -> None:
+    rng, x = sf.Rng(name, seed=9, a=a, c=c, m=m), 9
+    dtype = "uint32" if name == "lcg32" else "uint64"
+    for drawn in rng.bits(200, dtype).tolist():
+        x = (a * x + c) % m
+        assert drawn == x
+    rng.reset()
+    rng.skip(10**18)
+    power, total = pow(a, 10**18, m * (a - 1)), 9
+    total = (power * 9 + c * ((power - 1) // (a - 1))) % m
+    assert rng.state["words"][0] == total
+    assert pickle.loads(pickle.dumps(rng)).bits() == rng.bits()
+
+
+def test_lcgs_choose_a_seed_of_their_own_below_any_modulus() -> None:
+    assert len({sf.Rng("lcg32", a=5, c=3, m=257).seed for _ in range(20)}) > 1
 
 
 def test_minstd_gives_the_standards_ten_thousandth_output() -> None:
@@ -148,9 +181,54 @@ def test_skip_passes_over_draws_or_says_that_it_cannot(name: str) -> None:
         assert np.array_equal(skipped.bits(10), drawn.bits(10))
 
 
-def test_some_methods_skip() -> None:
-    for name in ("minstd", "pcg32", "splitmix64"):
-        sf.Rng(name, seed=SEED).skip(2**60)
+@pytest.mark.parametrize("name", NAMES)
+def test_methods_skip_far_or_say_that_they_cannot(name: str) -> None:
+    once, twice = sf.Rng(name, seed=SEED), sf.Rng(name, seed=SEED)
+    if name in WITHOUT_SKIP:
+        with pytest.raises(NotImplementedError, match=name):
+            once.skip(2**60)
+        return
+    once.skip(2**60 + 99)
+    twice.skip(2**60)
+    twice.skip(99)
+    assert once.bits(5).tolist() == twice.bits(5).tolist()
+
+
+def drawn_by_threads(rngs: list[sf.Rng]) -> np.ndarray:
+    """4,096 float32 of each, drawn by a thread of its own."""
+    drawn = np.empty((len(rngs), 4096), dtype=np.float32)
+    threads = [
+        threading.Thread(target=rng.random, kwargs={"out": drawn[i], "dtype": "float32"}) for i, rng in enumerate(rngs)
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    return drawn
+
+
+def jumped(name: str, count: int) -> list[sf.Rng]:
+    rngs = [sf.Rng(name, seed=SEED)]
+    for _ in range(count - 1):
+        rngs.append(copy.deepcopy(rngs[-1]))
+        rngs[-1].skip(0x9E3779B97F4A7C15)
+    return rngs
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_shared_seeds_repeat_and_the_policies_do_not(name: str) -> None:
+    shared = drawn_by_threads([sf.Rng(name, seed=SEED) for _ in range(4)])
+    assert (shared == shared[0]).all()
+    policies = {
+        "spawned": sf.Rng(name, seed=SEED).spawn(4),
+        "streams": [sf.Rng(name, seed=SEED, stream=thread) for thread in range(4)],
+    }
+    if name not in WITHOUT_SKIP | {"minstd", "lcg32", "lcg64", "randu"}:
+        policies["jumped"] = jumped(name, 4)
+    for policy, rngs in policies.items():
+        # Independent rows correlate by 1 / sqrt(4096) = 1/64; 5.5 of those leave one chance in 70,000 for all pairs.
+        correlations = np.corrcoef(drawn_by_threads(rngs))
+        assert np.abs(correlations - np.eye(4)).max() < 5.5 / 64, policy
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -203,6 +281,18 @@ def test_threads_take_turns() -> None:
         (lambda: sf.Rng("minstd", seed=0), ValueError, "0"),
         (lambda: sf.Rng("minstd", seed=2**31 - 1), ValueError, "2147483647"),
         (lambda: sf.Rng("xorshift64", seed=0), ValueError, "0"),
+        (lambda: sf.Rng("randu", seed=2), ValueError, "odd"),
+        (lambda: sf.Rng("ran1", seed=0), ValueError, "2147483646"),
+        (lambda: sf.Rng("ran2", seed=2147483399), ValueError, "2147483398"),
+        (lambda: sf.Rng("mt19937", seed=2**32), ValueError, "4294967295"),
+        (lambda: sf.Rng("pcg32", seed=1, a=5), ValueError, "lcg32"),
+        (lambda: sf.Rng("lcg32", seed=1, a=4), ValueError, "factor 4"),
+        (lambda: sf.Rng("lcg32", seed=1, a=-1), ValueError, "a is -1"),
+        (lambda: sf.Rng("lcg32", seed=1, a=1.5), TypeError, "a is 1.5"),  # type: ignore[arg-type]
+        (lambda: sf.Rng("lcg32", seed=1, m=2**33), ValueError, "2.*32"),
+        (lambda: sf.Rng("lcg64", seed=1, m=0), ValueError, "m is 0"),
+        (lambda: sf.Rng("lcg64", seed=1, m=2**64 + 1), ValueError, "m is"),
+        (lambda: sf.Rng("lcg64", seed=2, c=0), ValueError, "seed is 2"),
         (lambda: sf.Rng("pcg32", seed=1, stream=2**63), ValueError, "stream"),
         (lambda: sf.Rng("pcg32", seed=1).random(-1), ValueError, "-1"),
         (lambda: sf.Rng("pcg32", seed=1).random(2.0), TypeError, "shape"),  # type: ignore[call-overload]
