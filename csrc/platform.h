@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/mman.h>
 #include <time.h>
 
@@ -103,6 +104,32 @@ static inline sf_lanes64 sf_lanes64_multiply32(sf_lanes64 a, sf_lanes64 b) {
 #else
     return (a & 0xffffffffu) * (b & 0xffffffffu);
 #endif
+}
+
+/* The lanes of two or of four registers in turn: x[0][0], x[1][0], …, x[0][1], … */
+static inline void sf_lanes64_interleave2(const sf_lanes64 x[2], void *out) {
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+    const __m512i first = _mm512_set_epi64(11, 3, 10, 2, 9, 1, 8, 0), second = _mm512_set_epi64(15, 7, 14, 6, 13, 5, 12, 4);
+    _mm512_storeu_si512(out, _mm512_permutex2var_epi64((__m512i)x[0], first, (__m512i)x[1]));
+    _mm512_storeu_si512((char *)out + 64, _mm512_permutex2var_epi64((__m512i)x[0], second, (__m512i)x[1]));
+#else
+    uint64_t words[2 * SF_LANES64];
+    for (int l = 0; l < SF_LANES64; ++l)
+        for (int w = 0; w < 2; ++w) words[2 * l + w] = x[w][l];
+    memcpy(out, words, sizeof words);
+#endif
+}
+static inline void sf_lanes64_interleave4(const sf_lanes64 x[4], void *out) {
+    uint64_t halves[2][2 * SF_LANES64];
+    const sf_lanes64 even[2] = {x[0], x[2]}, odd[2] = {x[1], x[3]};
+    sf_lanes64_interleave2(even, halves[0]);
+    sf_lanes64_interleave2(odd, halves[1]);
+    for (int part = 0; part < 2; ++part) {
+        sf_lanes64 pair[2];
+        memcpy(&pair[0], halves[0] + part * SF_LANES64, sizeof pair[0]);
+        memcpy(&pair[1], halves[1] + part * SF_LANES64, sizeof pair[1]);
+        sf_lanes64_interleave2(pair, (uint64_t *)out + 2 * part * SF_LANES64);
+    }
 }
 
 /* How many bits of x are 1. */

@@ -7,7 +7,9 @@
 
 #include "rng_methods.h"
 
-enum { BLOCK_WORDS = 2048 }; /* raw draws kept in the first cache between drawing and converting */
+/* Raw draws between drawing and converting. Few, so that the stores of one block to memory go on
+ * while the next is drawn: with 2048 the two took turns, at 1.2 instead of 0.9 ns for sfc64. */
+enum { BLOCK_WORDS = 512 };
 
 /* Asking for the level costs as much as dozens of draws. */
 static const sf_rng_kernels *kernels_for(size_t count) {

@@ -21,10 +21,19 @@ static void f64_from_u64(size_t count, const uint64_t *SF_RESTRICT words, double
 
 static void f64_from_u32(size_t count, unsigned shift, const uint32_t *SF_RESTRICT words, double *SF_RESTRICT out) {
     /* Both parts and their sum are exact: 27 + 26 = 53 bits. */
+#if defined(__AVX512DQ__) /* converts 64-bit integers: put the bits together first */
+    for (size_t i = 0; i < count; ++i) {
+        uint64_t pair;
+        memcpy(&pair, words + 2 * i, 8);
+        uint64_t high = (pair << shift & 0xffffffffu) >> 5, low = (pair >> 32 << shift & 0xffffffffu) >> 6;
+        out[i] = (double)(int64_t)(high << 26 | low) * 0x1p-53;
+    }
+#else
     for (size_t i = 0; i < count; ++i) {
         int32_t high = (int32_t)(words[2 * i] << shift >> 5), low = (int32_t)(words[2 * i + 1] << shift >> 6);
         out[i] = (double)high * 0x1p-27 + (double)low * 0x1p-53;
     }
+#endif
 }
 
 /* ---- splitmix64 ---- */

@@ -56,15 +56,8 @@ static inline void philox4x32_rounds(sf_lanes64 x[PHILOX_SETS][4], const uint32_
 
 /* The blocks of one register, in order. */
 static inline void philox4x32_store(const sf_lanes64 x[4], uint32_t *SF_RESTRICT out) {
-    /* Two words to a lane, then the lanes of both in turn. */
     sf_lanes64 halves[2] = {(x[0] & 0xffffffffu) | x[1] << 32, (x[2] & 0xffffffffu) | x[3] << 32};
-    uint64_t pairs[2][SF_LANES64];
-    memcpy(pairs, halves, sizeof pairs);
-    for (int l = 0; l < SF_LANES64; ++l)
-        for (int h = 0; h < 2; ++h) {
-            out[4 * l + 2 * h] = (uint32_t)pairs[h][l];
-            out[4 * l + 2 * h + 1] = (uint32_t)(pairs[h][l] >> 32);
-        }
+    sf_lanes64_interleave2(halves, out);
 }
 
 static void philox4x32(const uint32_t *counter, const uint32_t *key, size_t blocks, uint32_t *SF_RESTRICT out) {
@@ -120,11 +113,7 @@ static size_t philox4x64_lanes(const uint64_t *counter, const uint64_t *key, siz
             for (int w = 1; w < 4; ++w) x[s][w] = all_lanes(counter[w]);
         }
         philox4x64_rounds(x, key);
-        uint64_t words[PHILOX_SETS][4][SF_LANES64];
-        memcpy(words, x, sizeof words);
-        for (size_t s = 0; s < PHILOX_SETS; ++s)
-            for (size_t l = 0; l < SF_LANES64; ++l)
-                for (size_t w = 0; w < 4; ++w) out[4 * (done + s * SF_LANES64 + l) + w] = words[s][w][l];
+        for (int s = 0; s < PHILOX_SETS; ++s) sf_lanes64_interleave4(x[s], out + 4 * (done + (size_t)(s * SF_LANES64)));
     }
     return done;
 }

@@ -63,7 +63,8 @@ def test_our_state_goes_into_numpys_generator(name: str, draws: int) -> None:
 
 def test_mt19937_is_seeded_as_numpys_legacy_one() -> None:
     # RandomState seeds by init_genrand, and random_sample is genrand_res53.
-    legacy: Any = np.random.RandomState(5489)
+    make: Any = np.random.RandomState
+    legacy = make(5489)
     assert np.array_equal(sf.Rng("mt19937", seed=5489).random(1000), legacy.random_sample(1000))
 
 
