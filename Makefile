@@ -17,7 +17,7 @@ venv = .venv/bin/python
 MITSUBA_PYTHON = build/mitsuba/bin/python
 with_mitsuba = DRJIT_LIBLLVM_PATH=$$(ls /usr/lib/*/libLLVM.so.19* 2>/dev/null | head -n 1) PYTHONPATH=$$($(venv) -c 'import sysconfig; print(sysconfig.get_path("platlib"))') $(MITSUBA_PYTHON)
 
-.PHONY: help demo test sanitize lint bench clean packages-demo packages-test packages-bench build-c
+.PHONY: help demo test sanitize lint bench battery clean packages-demo packages-test packages-bench build-c
 .DELETE_ON_ERROR:
 .NOTPARALLEL: # packages come first; CMake and pip use all processors themselves
 
@@ -27,6 +27,7 @@ help:
 	@echo "make sanitize  runs the C tests under AddressSanitizer with UBSan, then ThreadSanitizer"
 	@echo "make lint      ruff, mypy --strict, warnings as errors, clang-format where there is one"
 	@echo "make bench     measures speed and accuracy; figures go to standard output"
+	@echo "make battery   runs dieharder over every generator; writes the table of docs/generators.md"
 	@echo "make clean     removes build/, out/, dist/ and .venv/"
 
 demo: packages-demo .venv/.demo
@@ -55,6 +56,12 @@ lint: packages-test .venv/.lint
 bench: packages-bench .venv/.demo build/reference/penumbra_256.npy build/reference/cornell_256.npy
 	$(with_mitsuba) bench/render.py
 	$(venv) bench/startup.py
+	$(venv) bench/generators.py
+
+# Some 15 minutes of two processors; build/battery/ keeps what was run.
+battery: packages-demo .venv/.demo
+	@scripts/install-packages.sh dieharder
+	$(venv) bench/battery.py
 
 clean:
 	rm -rf build out dist .venv .pytest_cache .mypy_cache .ruff_cache
