@@ -6,6 +6,7 @@
 import copy
 import pickle
 import threading
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -48,7 +49,7 @@ def test_our_state_goes_into_numpys_generator(name: str, draws: int) -> None:
     numpy.state = rng.bit_generator.state
     ours = np.random.Generator(rng.bit_generator)
     other = np.random.Generator(numpy)
-    for draw in (
+    distributions: list[Callable[[np.random.Generator], object]] = [
         lambda g: g.random(100),
         lambda g: g.normal(size=100),
         lambda g: g.integers(0, 1000, size=100),
@@ -57,14 +58,14 @@ def test_our_state_goes_into_numpys_generator(name: str, draws: int) -> None:
         lambda g: g.random(101, dtype="float32"),
         lambda g: g.permutation(50),
         lambda g: g.exponential(size=100),
-    ):
-        assert np.array_equal(draw(ours), draw(other))
+    ]
+    for draw in distributions:
+        assert np.array_equal(np.asarray(draw(ours)), np.asarray(draw(other)))
 
 
 def test_mt19937_is_seeded_as_numpys_legacy_one() -> None:
     # RandomState seeds by init_genrand, and random_sample is genrand_res53.
-    make: Any = np.random.RandomState
-    legacy = make(5489)
+    legacy: Any = np.random.RandomState(5489)
     assert np.array_equal(sf.Rng("mt19937", seed=5489).random(1000), legacy.random_sample(1000))
 
 
