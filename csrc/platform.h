@@ -109,7 +109,8 @@ static inline sf_lanes64 sf_lanes64_multiply32(sf_lanes64 a, sf_lanes64 b) {
 /* The lanes of two or of four registers in turn: x[0][0], x[1][0], …, x[0][1], … */
 static inline void sf_lanes64_interleave2(const sf_lanes64 x[2], void *out) {
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
-    const __m512i first = _mm512_set_epi64(11, 3, 10, 2, 9, 1, 8, 0), second = _mm512_set_epi64(15, 7, 14, 6, 13, 5, 12, 4);
+    const __m512i first = _mm512_set_epi64(11, 3, 10, 2, 9, 1, 8, 0);
+    const __m512i second = _mm512_set_epi64(15, 7, 14, 6, 13, 5, 12, 4);
     _mm512_storeu_si512(out, _mm512_permutex2var_epi64((__m512i)x[0], first, (__m512i)x[1]));
     _mm512_storeu_si512((char *)out + 64, _mm512_permutex2var_epi64((__m512i)x[0], second, (__m512i)x[1]));
 #else

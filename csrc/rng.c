@@ -111,8 +111,8 @@ sf_status sf_rng_init_lcg(sf_rng *rng, sf_rng_kind kind, const sf_lcg_parameters
                           uint64_t stream, sf_error *error) {
     if (!is_lcg(kind)) {
         const char *name = sf_rng_name(kind);
-        return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s has constants of its own; a, c and m are for lcg32 and lcg64",
-                       name ? name : "this kind");
+        return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                       "%s has constants of its own; a, c and m are for lcg32 and lcg64", name ? name : "this kind");
     }
     return init(rng, kind, parameters, seed, stream, error);
 }

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-/* Drawing from any generator: one value, and arrays. */
-#include <assert.h>
+/* Arrays of draws from any generator. */
 #include <string.h>
 
 #include "rng_methods.h"
@@ -16,106 +15,11 @@ static const sf_rng_kernels *kernels_for(size_t count) {
     return sf_rng_kernels_at(count < 64 ? SF_ISA_BASELINE : sf_isa_active());
 }
 
-/* Whether floats are not the top bits of draws: an LCG with a modulus of its own. */
-static int is_scaled(const sf_rng *rng) {
-    return (rng->kind == SF_RNG_LCG32 && rng->as.lcg32.modulus) || (rng->kind == SF_RNG_LCG64 && rng->as.lcg64.modulus);
-}
-
-/* ---- one value ---- */
-
-uint64_t sf_rng_next_raw(sf_rng *rng) {
-    switch (rng->kind) {
-        case SF_RNG_MINSTD: return sf_minstd_next(&rng->as.minstd);
-        case SF_RNG_LCG32: return sf_lcg32_next(&rng->as.lcg32);
-        case SF_RNG_LCG64: return sf_lcg64_next(&rng->as.lcg64);
-        case SF_RNG_RANDU: return sf_randu_next(&rng->as.randu);
-        case SF_RNG_RAN1: return sf_ran1_next(&rng->as.ran1);
-        case SF_RNG_RAN2: return sf_ran2_next(&rng->as.ran2);
-        case SF_RNG_XORSHIFT64: return sf_xorshift64_next(&rng->as.xorshift64);
-        case SF_RNG_XORSHIFT64_LRL: return sf_xorshift64_lrl_next(&rng->as.xorshift64);
-        case SF_RNG_COMBINED: return sf_combined_next(&rng->as.combined);
-        case SF_RNG_MT19937: return sf_mt19937_next(&rng->as.mt19937);
-        case SF_RNG_MT19937_64: return sf_mt19937_64_next(&rng->as.mt19937_64);
-        case SF_RNG_PCG32: return sf_pcg32_next(&rng->as.pcg32);
-        case SF_RNG_PCG64DXSM: return sf_pcg64dxsm_next(&rng->as.pcg64dxsm);
-        case SF_RNG_XOSHIRO256PP: return sf_xoshiro256pp_next(&rng->as.xoshiro256pp);
-        case SF_RNG_SFC64: return sf_sfc64_next(&rng->as.sfc64);
-        case SF_RNG_PHILOX4X32: return sf_philox4x32_next(&rng->as.philox4x32);
-        case SF_RNG_PHILOX4X64: return sf_philox4x64_next(&rng->as.philox4x64);
-        case SF_RNG_SPLITMIX64: return sf_splitmix64_next(&rng->as.splitmix64);
-        case SF_RNG_COUNT: break;
-    }
-    assert(!"rng was initialized");
-    return 0;
-}
-
-/* The next half of a 64-bit draw; the high one waits in the generator. */
-static uint32_t next_half(sf_rng *rng) {
-    uint32_t half = rng->pending;
-    if (rng->has_pending) {
-        rng->pending = 0;
-        rng->has_pending = 0;
-        return half;
-    }
-    uint64_t draw = sf_rng_next_raw(rng);
-    rng->pending = (uint32_t)(draw >> 32);
-    rng->has_pending = 1;
-    return (uint32_t)draw;
-}
-
-uint32_t sf_rng_next_u32(sf_rng *rng) {
-    return sf_rng_method_of(rng)->native_bits == 64 ? next_half(rng) : (uint32_t)sf_rng_next_raw(rng);
-}
-
-uint64_t sf_rng_next_u64(sf_rng *rng) {
-    uint64_t first = sf_rng_next_raw(rng);
-    return sf_rng_method_of(rng)->native_bits == 64 ? first : sf_rng_next_raw(rng) << 32 | first;
-}
-
-/* A draw as a fraction of 2^64, or of 2^32 for methods of up to 32 bits. */
-static uint64_t next_fraction(sf_rng *rng) {
-    const sf_rng_method *method = sf_rng_method_of(rng);
-    uint64_t wide = sf_rng_next_raw(rng);
-    if (method->native_bits == 64) {
-        if (is_scaled(rng)) method->scale(rng, 1, &wide);
-        return wide;
-    }
-    uint32_t narrow = (uint32_t)wide << (32 - method->native_bits);
-    if (is_scaled(rng)) method->scale(rng, 1, &narrow);
-    return narrow;
-}
-
-float sf_rng_next_f32(sf_rng *rng) {
-    if (sf_rng_method_of(rng)->native_bits < 64) return sf_float_from_bits((uint32_t)next_fraction(rng));
-    return sf_float_from_bits(is_scaled(rng) ? (uint32_t)(next_fraction(rng) >> 32) : next_half(rng));
-}
-
-double sf_rng_next_f64(sf_rng *rng) {
-    uint64_t first = next_fraction(rng);
-    if (sf_rng_method_of(rng)->native_bits == 64) return sf_double_from_bits(first);
-    return (double)(int64_t)(first >> 5) * 0x1p-27 + (double)(int64_t)(next_fraction(rng) >> 6) * 0x1p-53;
-}
-
-uint32_t sf_rng_next_full32(sf_rng *rng) {
-    unsigned bits = sf_rng_method_of(rng)->native_bits;
-    if (bits == 64) return is_scaled(rng) ? (uint32_t)(next_fraction(rng) >> 32) : next_half(rng);
-    uint32_t first = (uint32_t)next_fraction(rng);
-    return bits == 32 ? first : (first & 0xffff0000u) | (uint32_t)next_fraction(rng) >> 16;
-}
-
-uint64_t sf_rng_next_full64(sf_rng *rng) {
-    if (sf_rng_method_of(rng)->native_bits == 64) return next_fraction(rng);
-    uint64_t first = sf_rng_next_full32(rng);
-    return first << 32 | sf_rng_next_full32(rng);
-}
-
-/* ---- arrays ---- */
-
 /* The halves of 64-bit draws, low first; an odd one waits in the generator. */
 static void draw_halves(sf_rng *rng, size_t count, uint32_t *out, const sf_rng_kernels *kernels) {
     uint64_t block[BLOCK_WORDS / 2];
     if (count && rng->has_pending) {
-        *out++ = next_half(rng);
+        *out++ = sf_rng_next_half(rng);
         --count;
     }
     while (count > 1) {
@@ -128,7 +32,7 @@ static void draw_halves(sf_rng *rng, size_t count, uint32_t *out, const sf_rng_k
         out += 2 * pairs;
         count -= 2 * pairs;
     }
-    if (count) *out = next_half(rng);
+    if (count) *out = sf_rng_next_half(rng);
 }
 
 void sf_rng_fill_u32(sf_rng *rng, size_t count, uint32_t *out) {
@@ -160,9 +64,9 @@ static void draw_float_words(sf_rng *rng, size_t count, uint32_t *out, const sf_
     const sf_rng_method *method = sf_rng_method_of(rng);
     if (method->native_bits < 64) {
         method->draw(rng, count, out, kernels);
-        if (is_scaled(rng)) method->scale(rng, count, out);
-    } else if (is_scaled(rng)) {
-        for (size_t i = 0; i < count; ++i) out[i] = (uint32_t)(next_fraction(rng) >> 32);
+        if (sf_rng_is_scaled(rng)) method->scale(rng, count, out);
+    } else if (sf_rng_is_scaled(rng)) {
+        for (size_t i = 0; i < count; ++i) out[i] = sf_rng_next_full32(rng);
     } else {
         draw_halves(rng, count, out, kernels);
     }
@@ -173,7 +77,7 @@ void sf_rng_fill_f32(sf_rng *rng, size_t count, float *out) {
     const sf_rng_kernels *kernels = kernels_for(count);
     if (method->draw_floats && count > BLOCK_WORDS) {
         if (rng->has_pending) {
-            *out++ = sf_float_from_bits(next_half(rng));
+            *out++ = sf_float_from_bits(sf_rng_next_half(rng));
             --count;
         }
         method->draw_floats(rng, count / 2, SF_RNG_F32, out, kernels);
@@ -198,7 +102,7 @@ static void fill_f64_wide(sf_rng *rng, size_t count, double *out, const sf_rng_k
     for (size_t n; count; count -= n, out += n) {
         n = count < BLOCK_WORDS / 2 ? count : BLOCK_WORDS / 2;
         method->draw(rng, n, block, kernels);
-        if (is_scaled(rng)) method->scale(rng, n, block);
+        if (sf_rng_is_scaled(rng)) method->scale(rng, n, block);
         kernels->f64_from_u64(n, block, out);
     }
 }

@@ -37,6 +37,12 @@ extern const sf_rng_method sf_rng_minstd, sf_rng_lcg32, sf_rng_lcg64, sf_rng_ran
 
 const sf_rng_method *sf_rng_method_of(const sf_rng *rng);
 
+/* Whether floats are not the top bits of draws: an LCG with a modulus of its own. */
+int sf_rng_is_scaled(const sf_rng *rng);
+
+/* The next half of a 64-bit draw, low first; the high one waits in the generator. */
+uint32_t sf_rng_next_half(sf_rng *rng);
+
 /* Defines draw_NEXT: a loop on a copy, which the compiler keeps in registers. */
 #define SF_RNG_DRAW(member, next, T)                                                                         \
     static void draw_##next(sf_rng *rng, size_t count, void *out, const sf_rng_kernels *kernels) {           \

@@ -24,18 +24,15 @@ struct bitgen {
     uint64_t (*next_raw)(void *);
 };
 
-uint64_t next_uint64(void *rng) { return sf_rng_next_full64(static_cast<sf_rng *>(rng)); }
-uint32_t next_uint32(void *rng) { return sf_rng_next_full32(static_cast<sf_rng *>(rng)); }
-double next_double(void *rng) { return sf_rng_next_f64(static_cast<sf_rng *>(rng)); }
-uint64_t next_raw(void *rng) { return sf_rng_next_raw(static_cast<sf_rng *>(rng)); }
-
 // The lock may be taken again by the thread that has it: NumPy shuffles lists under it, and what a
 // list's items do may draw.
 struct generator : shared<sf_rng, std::recursive_mutex> {
     bitgen functions;
 
-    explicit generator(const sf_rng &rng)
-        : shared(rng), functions{&value, next_uint64, next_uint32, next_double, next_raw} {}
+    explicit generator(const sf_rng &rng) : shared(rng) {
+        sf_rng_callbacks c = sf_rng_callbacks_of(rng.kind);
+        functions = {&value, c.next_full64, c.next_full32, c.next_f64, c.next_raw};
+    }
 };
 
 sf_rng_kind find(const std::string &name) {

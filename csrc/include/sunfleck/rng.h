@@ -174,9 +174,19 @@ double sf_rng_next_f64(sf_rng *rng);
 uint32_t sf_rng_next_full32(sf_rng *rng);
 uint64_t sf_rng_next_full64(sf_rng *rng);
 
-/* Passes over `count` native draws, and drops a waiting half word. Takes O(log count) steps: less
- * than a microsecond for methods that count or are congruential, some 100 µs for those that are
- * linear over bits, some 10 ms for the Mersenne Twisters (which walk up to 2^21 draws instead).
+/* The functions of those names made for one kind, for callers that keep pointers to functions, as
+ * NumPy's bitgen_t does; `rng` is a sf_rng of that kind. */
+typedef struct sf_rng_callbacks {
+    uint64_t (*next_full64)(void *rng);
+    uint32_t (*next_full32)(void *rng);
+    double (*next_f64)(void *rng);
+    uint64_t (*next_raw)(void *rng);
+} sf_rng_callbacks;
+sf_rng_callbacks sf_rng_callbacks_of(sf_rng_kind kind);
+
+/* Passes over `count` native draws, and drops a waiting half word. Takes O(log count) steps: about
+ * a microsecond for methods that count or are congruential, 20 µs for xorshift64 and combined,
+ * 300 µs for xoshiro256++, 8 ms for the Mersenne Twisters (which walk some 2^22 draws instead).
  * SF_STATUS_UNSUPPORTED, with `rng` unchanged, for ran1, ran2 (their tables depend on all draws
  * before) and sfc64 (no closed form is known). */
 sf_status sf_rng_skip(sf_rng *rng, uint64_t count, sf_error *error);
