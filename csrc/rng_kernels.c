@@ -16,7 +16,7 @@ static void f32_from_u32(size_t count, unsigned shift, const uint32_t *SF_RESTRI
 }
 
 static void f64_from_u64(size_t count, const uint64_t *SF_RESTRICT words, double *SF_RESTRICT out) {
-    for (size_t i = 0; i < count; ++i) out[i] = sf_double_from_bits(words[i]);
+    for (size_t i = 0; i < count; ++i) out[i] = to_double(words[i]);
 }
 
 static void f64_from_u32(size_t count, unsigned shift, const uint32_t *SF_RESTRICT words, double *SF_RESTRICT out) {
@@ -96,9 +96,11 @@ static void xoshiro256pp(sf_xoshiro256pp *state, size_t count, sf_rng_form form,
     done = xoshiro_fill_lanes(state, count, form, out);
 #endif
     sf_xoshiro256pp g = *state;
-    for (; done < count; ++done) {
-        uint64_t line[1] = {sf_xoshiro256pp_next(&g)};
-        xoshiro_store(line, 1, form, bytes + 8 * done);
+    for (int n; done < count; done += (size_t)n) {
+        uint64_t line[64];
+        n = count - done < 64 ? (int)(count - done) : 64;
+        for (int i = 0; i < n; ++i) line[i] = sf_xoshiro256pp_next(&g);
+        xoshiro_store(line, n, form, bytes + 8 * done);
     }
     *state = g;
 }

@@ -12,6 +12,22 @@
 #include "platform.h"
 #include "rng_kernels.h"
 
+/* sf_double_from_bits, in operations that every level has for lanes; below AVX-512 none converts
+ * 64-bit integers. The halves of the 53 bits are put into the significands of 2^84 and 2^52, whose
+ * sum less those powers is exact. */
+static inline double to_double(uint64_t bits) {
+#if defined(__AVX512DQ__)
+    return sf_double_from_bits(bits);
+#else
+    uint64_t n = bits >> 11;
+    union {
+        uint64_t bits;
+        double value;
+    } high = {UINT64_C(0x4530000000000000) | n >> 32}, low = {UINT64_C(0x4330000000000000) | (n & 0xffffffffu)};
+    return ((high.value - 0x1.00000001p84) + low.value) * 0x1p-53;
+#endif
+}
+
 static inline sf_lanes64 all_lanes(uint64_t x) { return x - (sf_lanes64){0}; }
 
 /* 0, 1, 2, … */

@@ -10,6 +10,7 @@
 
 #include "platform.h"
 #include "rng_kernels.h"
+#include "rng_lanes.h"
 
 enum {
     XOSHIRO_LANES = 8,
@@ -86,7 +87,7 @@ static inline void xoshiro_store(const uint64_t *draws, int count, sf_rng_form f
         memcpy(out, draws, 8 * (size_t)count);
     } else if (form == SF_RNG_F64) {
         for (int i = 0; i < count; ++i) {
-            double x = sf_double_from_bits(draws[i]);
+            double x = to_double(draws[i]);
             memcpy(out + 8 * i, &x, 8);
         }
     } else {
