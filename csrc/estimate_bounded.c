@@ -160,7 +160,8 @@ sf_status sf_betting_interval_f64(size_t count, const double *x, double low, dou
         double limit = log(2.0 / (1.0 - confidence));
         past before = {0};
         for (size_t i = 0; i < count; ++i) {
-            bets[i] = past_bet(&before, limit);
+            /* For a count fixed ahead: sqrt(2 log(2/alpha) / (n variance)). */
+            bets[i] = sqrt(2.0 * limit / ((double)count * past_variance(&before)));
             past_add(&before, scaled[i]);
         }
         *lower = low + (high - low) * least_mean(count, scaled, bets, limit);

@@ -329,7 +329,11 @@ static int follows_extremes(const integration *in) {
     return r * r * dof > t * t * (1.0 - r * r);
 }
 
-static int is_suspicious(const integration *in) { return in->result->nonfinite > 0 || follows_extremes(in); }
+/* A confidence sequence allows for what it has not seen. */
+static int is_suspicious(const integration *in) {
+    int bounded = in->independent && range_is_known(&in->options);
+    return in->result->nonfinite > 0 || (!bounded && follows_extremes(in));
+}
 
 /* ---- from look to look ---- */
 

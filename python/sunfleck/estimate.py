@@ -677,8 +677,8 @@ class ConfidenceSequence(_Bytes):
 def betting_interval(x: ArrayLike, low: float, high: float, confidence: float = 0.95) -> tuple[float, float]:
     """The interval for the mean of bounded samples by the hedged capital process.
 
-    Narrower than `ConfidenceSequence`, above all where samples are few or skewed, and as valid
-    whenever one looks; but it needs all samples at hand.
+    Holds at one count that was fixed ahead. Narrower than the empirical Bernstein bound, above
+    all where samples are few or skewed; needs all samples at hand.
 
     Parameters
     ----------

@@ -377,13 +377,13 @@ void sf_confidence_sequence_add_f64(sf_confidence_sequence *c, size_t count, con
 double sf_confidence_sequence_lower(const sf_confidence_sequence *c);
 double sf_confidence_sequence_upper(const sf_confidence_sequence *c);
 
-/* The interval of the hedged capital process (same paper, theorem 3, bets truncated at 3/4 of what
- * could ruin, half the capital on each side) after all `count` samples in [low, high]: narrower
- * than the sequence above, mostly where samples are few or skewed, and as valid at any time; but it
- * needs all samples at hand, and some 100 passes over them. Where the samples contradict every
- * mean (as likely as an error), lower is above upper.
+/* The interval for the mean of `count` samples in [low, high], the count fixed ahead, by the hedged
+ * capital process (same paper, theorem 3, with its bets for a fixed count, truncated at 3/4 of what
+ * could ruin; half the capital on each side): narrower than the empirical Bernstein bound, above
+ * all where samples are few or skewed. Needs all samples at hand, and some 100 passes over them.
+ * Where the samples contradict every mean (no likelier than an error), lower is above upper.
  *
- * Refuses a sample outside [low, high], or not finite; allocates count doubles while it runs. */
+ * Refuses a sample outside [low, high], or not finite; allocates 2 count doubles while it runs. */
 sf_status sf_betting_interval_f64(size_t count, const double *x, double low, double high, double confidence,
                                   double *lower, double *upper, sf_error *error);
 
