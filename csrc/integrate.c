@@ -15,7 +15,7 @@
 #define BLOCK_ROWS 8192           /* a call of the function */
 #define BLOCK_VALUES (1u << 18)   /* coordinates of a block, 2 MB, where dims are many */
 #define HEAVY_SHARE 0.5           /* of the means' variance, by one sample of each: suspicious … */
-#define HEAVY_CONFIDENCE 0.995    /* … if the means follow those samples beyond this doubt */
+#define HEAVY_CONFIDENCE 0.999    /* … if the means follow those samples beyond this doubt */
 #define LOOK_SHARE 0.5            /* of the error probability, for each look: of replicates … */
 #define INDEPENDENT_SHARE 0.8     /* … and of independent samples */
 #define PROBES 8                  /* points by which it is told whether the seed moves a pattern */
@@ -445,8 +445,9 @@ sf_status sf_integrate(sf_integrand function, void *user, const sf_integrate_opt
                       .result = result,
                       .error = error,
                       .independent = options->pattern == SF_PATTERN_RANDOM};
+    result->replicates = options->replicates;
     uint64_t points = 0;
-        status = prepare(&in, &points);
+    status = prepare(&in, &points);
     if (status == SF_STATUS_OK) status = run(&in, points);
     for (uint32_t r = 0; in.replicate && r < options->replicates; ++r) sf_point_set_destroy(in.replicate[r].set);
     sf_aligned_free(in.replicate);

@@ -85,6 +85,7 @@ static sf_integral integrate(sf_integrand f, watch *w, const sf_integrate_option
     assert_true(result.samples == w->points);
     assert_true(result.samples <= options->max_samples);
     assert_true(result.half_width > 0.0);
+    assert_true(result.replicates == options->replicates);
     return result;
 }
 
@@ -130,12 +131,12 @@ static void test_what_the_seed_leaves_in_place_is_shifted(void **state) {
 
 static void test_coverage_is_what_was_asked_for(void **state) {
     (void)state;
-    /* 300 seeds: four binomial deviations at 0.95 are 0.05. Above is as good as at. */
+    /* 200 seeds: four binomial deviations at 0.95 are 0.06. Above is as good as at. */
     const sf_pattern patterns[] = {SF_PATTERN_SOBOL, SF_PATTERN_HALTON, SF_PATTERN_RANDOM, SF_PATTERN_JITTERED,
                                    SF_PATTERN_UNIFORM};
     for (int k = 0; k < 5; ++k) {
         int covered = 0;
-        for (uint64_t seed = 0; seed < 300; ++seed) {
+        for (uint64_t seed = 0; seed < 200; ++seed) {
             watch w = {0};
             sf_integrate_options options = sf_integrate_options_default();
             options.pattern = patterns[k];
@@ -143,7 +144,7 @@ static void test_coverage_is_what_was_asked_for(void **state) {
             options.absolute = 0.03;
             covered += fabs(integrate(circle, &w, &options).value - PI) <= 0.03;
         }
-        if (covered < 0.9 * 300) fail_msg("%s covers %d of 300", sf_pattern_name(patterns[k]), covered);
+        if (covered < 0.89 * 200) fail_msg("%s covers %d of 200", sf_pattern_name(patterns[k]), covered);
     }
 }
 

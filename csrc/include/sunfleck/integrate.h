@@ -43,7 +43,7 @@ typedef enum sf_integral_stop {
     SF_INTEGRAL_INTERRUPTED, /* the function said so: value and half-width are the last look's */
     SF_INTEGRAL_SUSPICIOUS,  /* met, or max_samples, but the half-width cannot be trusted: samples that
                                 are not finite, or the means of the replicates follow the most
-                                extreme sample of each (correlated beyond 0.995, and half of their
+                                extreme sample of each (correlated beyond 0.999, and half of their
                                 variance): a heavy tail, or an event seen less than about once in each */
     SF_INTEGRAL_STOP_COUNT
 } sf_integral_stop;
