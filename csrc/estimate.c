@@ -131,6 +131,21 @@ void sf_channel_moments_add_f64(sf_channel_moments *m, size_t count, const doubl
     sf_channel_moments_merge(m, &total);
 }
 
+void sf_weighted_moments_add_f64(sf_weighted_moments *m, size_t count, const double *x, const double *weights) {
+    for (size_t i = 0; i < count; ++i) sf_weighted_moments_add(m, x[i], weights[i]);
+}
+
+void sf_running_sums_add_f64(sf_running_sums *r, size_t count, const double *f) {
+    for (size_t i = 0; i < count; ++i) sf_running_sums_add(r, f[i]);
+}
+void sf_running_sums_f32_add_f32(sf_running_sums_f32 *r, size_t count, const float *f) {
+    for (size_t i = 0; i < count; ++i) sf_running_sums_f32_add(r, f[i]);
+}
+
+void sf_batch_means_add_f64(sf_batch_means *b, size_t count, const double *x) {
+    for (size_t i = 0; i < count; ++i) sf_batch_means_add(b, x[i]);
+}
+
 double sf_moments_half_width(const sf_moments *m, double confidence) {
     if (m->count < 2) return (double)INFINITY;
     return sf_student_t_factor(confidence, (double)m->count - 1.0) * sf_moments_standard_error(m);

@@ -15,16 +15,26 @@ Examples
 """
 
 # What is heavy (OpenImageIO, trimesh, tqdm) is imported where it is used, not here.
-from sunfleck import mapping, scenes
+from sunfleck import estimate, mapping, scenes
 from sunfleck._core import version as _version
 from sunfleck.error import Error
-from sunfleck.estimate import Moments, VectorMoments
+from sunfleck.estimate import (
+    BatchMeans,
+    ChannelMoments,
+    ConfidenceSequence,
+    Moments,
+    RunningSums,
+    VectorMoments,
+    WeightedMoments,
+)
+from sunfleck.integrate import Integral, IntegralLook, integrate
 from sunfleck.load import load
 from sunfleck.mapping import MAPPINGS
 from sunfleck.points import PATTERNS, points, valid_counts
-from sunfleck.render import STOP_REASONS, Image, Progress, Summary, Tolerance, render
+from sunfleck.render import STOP_REASONS, Image, Progress, Summary, render
 from sunfleck.rng import RNGS, Rng
 from sunfleck.scene import Camera, Mesh, Plan, PlanDimensions, Scene, SceneInfo
+from sunfleck.tolerance import Tolerance
 
 __version__ = _version()
 
@@ -33,20 +43,29 @@ __all__ = [
     "PATTERNS",
     "RNGS",
     "STOP_REASONS",
+    "BatchMeans",
     "Camera",
+    "ChannelMoments",
+    "ConfidenceSequence",
     "Error",
     "Image",
+    "Integral",
+    "IntegralLook",
     "Mesh",
     "Moments",
     "Plan",
     "PlanDimensions",
     "Progress",
     "Rng",
+    "RunningSums",
     "Scene",
     "SceneInfo",
     "Summary",
     "Tolerance",
     "VectorMoments",
+    "WeightedMoments",
+    "estimate",
+    "integrate",
     "load",
     "mapping",
     "points",

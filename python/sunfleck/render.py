@@ -18,39 +18,12 @@ from sunfleck._core import Progress
 from sunfleck._files import FilePath
 from sunfleck.image import write_channels, write_false_color
 from sunfleck.scene import Scene
+from sunfleck.tolerance import Tolerance
 
-__all__ = ["STOP_REASONS", "Image", "Progress", "Summary", "Tolerance", "render"]
+__all__ = ["STOP_REASONS", "Image", "Progress", "Summary", "render"]
 
 STOP_REASONS: tuple[str, ...] = tuple(_core.stop_reasons())
 """The names of the numbers in `Image.stop_reason`."""
-
-
-@dataclass(frozen=True)
-class Tolerance:
-    """How far a pixel's (R+G+B)/3 may be off: ``max(absolute, relative * level)``.
-
-    Parameters
-    ----------
-    absolute : float
-        Linear radiance, at least 0.
-    relative : float
-        Of the level: the mean of (R+G+B)/3 over the frame after ``min_spp`` samples; at least 0.
-
-    Examples
-    --------
-    >>> import sunfleck as sf
-    >>> sf.Tolerance(absolute=0.002)
-    Tolerance(absolute=0.002, relative=0.0)
-    """
-
-    absolute: float = 0.0
-    relative: float = 0.0
-
-    def __post_init__(self) -> None:
-        for name in ("absolute", "relative"):
-            object.__setattr__(self, name, number(f"{name} tolerance", getattr(self, name)))
-        if self.absolute == 0 and self.relative == 0:  # C's word for "none asked for"
-            raise ValueError("the tolerance is 0, which no number of samples meets; give one above 0, or a fixed spp")
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@
 """estimate: NumPy's and SciPy's figures, merging, samples that are not finite, bad input."""
 
 import copy
+import math
 import pickle
 from typing import Any
 
@@ -103,6 +104,135 @@ def test_vector_moments_keep_one_variance_of_the_distance() -> None:
     assert (m.count, m.nonfinite) == (500, 1)
 
 
+def test_float32_running_sums_are_lost_at_a_mean_of_a_million() -> None:
+    x = 1e6 + np.tile([-1.0, 1.0], 5000)
+    single, double = sf.RunningSums("float32"), sf.RunningSums()
+    single.add(x)
+    double.add(x)
+    # The squares are 1e12: an ulp of their mean is 65,536 in float32. In float64 the sum, 1e16, is
+    # rounded by 1 in each of 10,000 steps: at most 1 in its mean, some 0.1 as it comes.
+    assert abs(single.variance - 1) > 1000
+    assert double.variance == pytest.approx(1, abs=0.5)
+    assert moments_of(x).variance == pytest.approx(1, rel=1e-9)
+
+
+def test_float64_running_sums_are_lost_at_a_mean_of_1e8() -> None:
+    sums = sf.RunningSums()
+    sums.add(1e8 + np.tile([-1.0, 1.0], 5000))  # an ulp of 1e16 is 2
+    assert abs(sums.variance - 1) > 0.5
+
+
+def test_running_sums_are_the_lecture_s() -> None:
+    sums = sf.RunningSums()
+    sums.add([1.0, 2.0, 6.0])
+    assert (sums.count, sums.m, sums.s, sums.mean) == (3, 9.0, 41.0, 3.0)
+    assert sums.variance == pytest.approx(41 / 3 - 9)
+    assert sums.standard_error == pytest.approx(math.sqrt((41 / 3 - 9) / 2))
+    sums.add(np.nan)
+    assert np.isnan(sums.mean)
+
+
+def test_weighted_moments_are_numpys() -> None:
+    rng = sf.Rng("pcg32", seed=7)
+    x, w = rng.random(1000), rng.random(1000)
+    m, tail = sf.WeightedMoments(), sf.WeightedMoments()
+    m.add(x[:400], w[:400])
+    tail.add(x[400:], weights=w[400:])
+    m.merge(tail)
+    mean = np.average(x, weights=w)
+    assert m.mean == pytest.approx(mean, rel=1e-13)
+    assert m.variance == pytest.approx(np.average((x - mean) ** 2, weights=w), rel=1e-12)
+    assert m.weight == pytest.approx(w.sum())
+    equal = sf.WeightedMoments()
+    equal.add(x, 0.25)
+    assert equal.standard_error == pytest.approx(stats.sem(x), rel=1e-10)
+    equal.add([1.0, 1.0, np.nan], [-1.0, np.inf, 1.0])
+    assert (equal.count, equal.nonfinite) == (1000, 3)
+
+
+@pytest.mark.parametrize("dtype", ["float32", "float64"])
+def test_channel_moments_are_those_of_each_channel(dtype: str) -> None:
+    x = sf.Rng("pcg32", seed=8).random((500, 3), dtype=dtype)
+    m, tail = sf.ChannelMoments(), sf.ChannelMoments()
+    m.add(x[:100])
+    tail.add(x[100:])
+    m.merge(tail)
+    m.add([np.nan, 0, 0])
+    exact = x.astype("float64")
+    assert (m.count, m.nonfinite) == (500, 1)
+    assert m.mean == pytest.approx(exact.mean(axis=0), rel=1e-13)
+    assert m.variance == pytest.approx(exact.var(axis=0), rel=1e-12)
+    assert m.standard_error == pytest.approx(stats.sem(exact), rel=1e-12)
+
+
+def test_batch_means_are_the_moments_of_the_means() -> None:
+    x = sf.Rng("pcg32", seed=9).random(1030)
+    batches = sf.BatchMeans(50)
+    batches.add(x[:333])
+    batches.add(x[333:])
+    assert batches.means.count == 20
+    assert batches.means.standard_error == pytest.approx(stats.sem(x[:1000].reshape(20, 50).mean(axis=1)), rel=1e-12)
+    assert batches.half_width(0.9) == batches.means.half_width(0.9)
+
+
+def test_bernstein_is_the_paper_s() -> None:
+    x = sf.Rng("pcg32", seed=10).random(400)
+    log = math.log(4 / 0.05)
+    expected = math.sqrt(2 * x.var(ddof=1) * log / 400) + 7 * 3 * log / (3 * 399)
+    assert moments_of(x).bernstein_half_width(-1, 2) == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_confidence_sequence_holds_at_every_look() -> None:
+    missed = 0
+    for stream in range(200):
+        c = sf.ConfidenceSequence(0, 1, confidence=0.9)
+        for x in sf.Rng("pcg32", seed=11, stream=stream).random((40, 50)):
+            c.add(x**3)
+            missed += not c.lower <= 0.25 <= c.upper
+            if not c.lower <= 0.25 <= c.upper:
+                break
+    assert missed <= 20 + 17  # a tenth, and four deviations of 4.2
+
+
+def test_a_target_is_reached_sooner() -> None:
+    x = sf.Rng("pcg32", seed=12).random(7000)
+    aimed, plain = sf.ConfidenceSequence(0, 1, target=0.01), sf.ConfidenceSequence(0, 1)
+    aimed.add(x)
+    plain.add(x)
+    assert aimed.upper - aimed.lower <= 0.02 < plain.upper - plain.lower
+    aimed.add([np.nan, 2.0])
+    assert (aimed.nonfinite, aimed.outside, aimed.lower, aimed.upper) == (1, 1, -np.inf, np.inf)
+
+
+def test_quantiles_are_scipys() -> None:
+    for p in (1e-9, 0.01, 0.3, 0.5, 0.9, 0.975, 1 - 1e-9):
+        assert sf.estimate.normal_quantile(p) == pytest.approx(stats.norm.ppf(p), rel=1e-9, abs=1e-12)
+        for dof in (1, 2.5, 7, 15, 31, 1000, 1e6):
+            assert sf.estimate.student_t_quantile(p, dof) == pytest.approx(stats.t.ppf(p, dof), rel=1e-7, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("make", "more"),
+    [
+        (sf.RunningSums, ([1.0, 2.0],)),
+        (lambda: sf.RunningSums("float32"), ([1.0, 2.0],)),
+        (sf.WeightedMoments, ([1.0, 2.0], [1.0, 3.0])),
+        (sf.ChannelMoments, ([[1.0, 2.0, 3.0]],)),
+        (lambda: sf.BatchMeans(2), ([1.0, 2.0, 3.0],)),
+        (lambda: sf.ConfidenceSequence(0, 5), ([1.0, 2.0],)),
+    ],
+)
+def test_every_kind_can_be_pickled(make: Any, more: Any) -> None:
+    one = make()
+    one.add(*more)
+    for twin in (pickle.loads(pickle.dumps(one)), copy.deepcopy(one)):
+        assert type(twin) is type(one)
+        twin.add(*more)
+        one_more = pickle.loads(pickle.dumps(one))
+        one_more.add(*more)
+        assert twin.__getstate__() == one_more.__getstate__() != one.__getstate__()
+
+
 @pytest.mark.parametrize(
     ("call", "error", "match"),
     [
@@ -115,6 +245,15 @@ def test_vector_moments_keep_one_variance_of_the_distance() -> None:
         (lambda: sf.Moments().half_width(1), ValueError, "confidence"),
         (lambda: sf.Moments().half_width("high"), TypeError, "confidence"),  # type: ignore[arg-type]
         (lambda: sf.VectorMoments().add([1.0, 2.0]), ValueError, r"\(2,\)"),
+        (lambda: sf.ChannelMoments().add([1.0, 2.0]), ValueError, r"\(2,\)"),
+        (lambda: sf.WeightedMoments().add([1.0, 2.0], [1.0, 2.0, 3.0]), ValueError, "weights have shape"),
+        (lambda: sf.BatchMeans(0), ValueError, "size is 0"),
+        (lambda: sf.RunningSums("float16"), TypeError, "dtype"),
+        (lambda: sf.ConfidenceSequence(1, 0), ValueError, r"\[1, 0\]"),
+        (lambda: sf.ConfidenceSequence(0, 1, 1.0), ValueError, "confidence"),
+        (lambda: sf.ConfidenceSequence(0, 1, target=0), ValueError, "target"),
+        (lambda: sf.Moments().bernstein_half_width(1, 0), ValueError, r"\[1.0, 0.0\]"),
+        (lambda: sf.estimate.betting_interval([0.5, 2.0], 0, 1), ValueError, "sample 1 is 2"),
     ],
 )
 def test_bad_input_is_named(call: Any, error: type[Exception], match: str) -> None:

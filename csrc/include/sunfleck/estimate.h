@@ -225,6 +225,9 @@ static inline double sf_weighted_moments_standard_error(const sf_weighted_moment
     return m->count > 1 && freedom > 0.0 ? sqrt(m->m2 / freedom * m->weight_square) / m->weight : (double)INFINITY;
 }
 
+/* Adds `count` samples with their weights, in order. */
+void sf_weighted_moments_add_f64(sf_weighted_moments *m, size_t count, const double *x, const double *weights);
+
 /* ---- the lecture's running sums ---- */
 
 typedef struct sf_running_sums {
@@ -249,6 +252,10 @@ static inline void sf_running_sums_f32_add(sf_running_sums_f32 *r, float f) {
     r->m += f;
     r->s += f * f;
 }
+
+/* Adds count values in order; floats are added to the float sums as they are. */
+void sf_running_sums_add_f64(sf_running_sums *r, size_t count, const double *f);
+void sf_running_sums_f32_add_f32(sf_running_sums_f32 *r, size_t count, const float *f);
 
 /* s/N - mean^2, negative where the subtraction has lost it; the error is then NaN, as it would
  * be on the lecture's slide. Samples that are not finite spoil the sums for good. */
@@ -289,6 +296,96 @@ static inline double sf_student_t_factor(double confidence, double dof) {
 /* Half-width of the mean's interval by Student's t: for independent samples that are near normal,
  * above all the means of replicates or of batches. Infinity below two samples. */
 double sf_moments_half_width(const sf_moments *m, double confidence);
+
+/* ---- batch means and replicates ---- */
+
+/* The means of successive batches of `size` samples, as moments. Samples of one stream that depend
+ * on their neighbours have batch means that hardly do, if the batch is longer than the dependence;
+ * n points of each of several replicates have means that are independent altogether. Begin with
+ * {0} and a size of at least 1. A sample that is not finite takes no place in its batch. */
+typedef struct sf_batch_means {
+    uint64_t size;
+    sf_moments batch; /* the one that is filling */
+    sf_moments means; /* of the full ones */
+    uint64_t nonfinite;
+} sf_batch_means;
+
+static inline void sf_batch_means_add(sf_batch_means *b, double x) {
+    if (!isfinite(x)) {
+        ++b->nonfinite;
+        return;
+    }
+    sf_moments_add(&b->batch, x);
+    if (b->batch.count < b->size) return;
+    sf_moments_add(&b->means, b->batch.mean);
+    b->batch.count = 0;
+    b->batch.mean = b->batch.m2 = 0.0;
+}
+void sf_batch_means_add_f64(sf_batch_means *b, size_t count, const double *x);
+
+/* Of the full batches: the mean, and the half-width of its interval by Student's t. */
+static inline double sf_batch_means_mean(const sf_batch_means *b) { return sf_moments_mean(&b->means); }
+static inline double sf_batch_means_standard_error(const sf_batch_means *b) {
+    return sf_moments_standard_error(&b->means);
+}
+static inline double sf_batch_means_half_width(const sf_batch_means *b, double confidence) {
+    return sf_moments_half_width(&b->means, confidence);
+}
+
+/* ---- bounded values: intervals that hold at every count, not only in the limit ---- */
+
+/* Half-width for the mean of independent samples that lie in an interval of length `range`, at
+ * one count fixed ahead: the empirical Bernstein bound, Maurer & Pontil 2009, theorem 4, on both
+ * sides (each with half the error). With variance s^2 and L = log(4 / (1 - confidence)):
+ * sqrt(2 s^2 L / n) + 7 range L / (3 (n - 1)). Infinity below two samples. */
+double sf_moments_bernstein_half_width(const sf_moments *m, double range, double confidence);
+
+/* A confidence sequence for the mean of samples in [low, high]: an interval after every sample, all
+ * of which hold at once with the confidence, so that one may look at any time and stop when one
+ * likes. The samples may depend on their past if their mean, given the past, does not.
+ *
+ * Method: the predictable plug-in empirical Bernstein confidence sequence with running
+ * intersection, Waudby-Smith & Ramdas 2023, "Estimating means of bounded random variables by
+ * betting", theorem 2, bets at most 1/2. Any bet holds that only the past decides. Theirs, which
+ * falls as 1 / sqrt(t log t), serves all counts alike, and pays for it with log t. Where the
+ * interval need only reach a `target`, the bet target / variance is the one whose interval does so
+ * first: at some 2 log(2 / (1 - confidence)) variance / target^2 samples, 1.9 times as many at 0.95
+ * as the normal approximation asks for. (It never falls much below target / 2.)
+ *
+ * State is constant; a sample takes some 30 ns. The order of the samples counts, so that two
+ * sequences cannot be merged.
+ *
+ * Samples that are not finite are counted and left out. One outside [low, high] shows that the
+ * interval was wrong: it is counted, and the sequence is [-infinity, infinity] from then on. */
+typedef struct sf_confidence_sequence {
+    double low, high, confidence;
+    double target; /* half-width to reach, 0 for none; may change with what the past has shown */
+    uint64_t count, nonfinite, outside;
+    double log_factor; /* log(2 / (1 - confidence)) */
+    double sum, square; /* of x, of (x - mean)^2; x scaled to [0,1] */
+    double bets, winnings, penalty; /* sums of lambda, lambda x, v psi(lambda) */
+    double lower, upper; /* the interval, scaled */
+} sf_confidence_sequence;
+
+/* low < high, both finite, confidence in (0,1), target finite and >= 0. */
+sf_status sf_confidence_sequence_init(sf_confidence_sequence *c, double low, double high, double confidence,
+                                      double target, sf_error *error);
+void sf_confidence_sequence_add(sf_confidence_sequence *c, double x);
+void sf_confidence_sequence_add_f64(sf_confidence_sequence *c, size_t count, const double *x);
+
+/* The interval; [low, high] before the first sample. */
+double sf_confidence_sequence_lower(const sf_confidence_sequence *c);
+double sf_confidence_sequence_upper(const sf_confidence_sequence *c);
+
+/* The interval for the mean of `count` samples in [low, high], the count fixed ahead, by the hedged
+ * capital process (same paper, theorem 3, with its bets for a fixed count, truncated at 3/4 of what
+ * could ruin; half the capital on each side): narrower than the empirical Bernstein bound, above
+ * all where samples are few or skewed. Needs all samples at hand, and some 100 passes over them.
+ * Where the samples contradict every mean (no likelier than an error), lower is above upper.
+ *
+ * Refuses a sample outside [low, high], or not finite; allocates 2 count doubles while it runs. */
+sf_status sf_betting_interval_f64(size_t count, const double *x, double low, double high, double confidence,
+                                  double *lower, double *upper, sf_error *error);
 
 #ifdef __cplusplus
 }

@@ -8,6 +8,7 @@
 #include "sunfleck/base.h"
 #include "sunfleck/estimate.h"
 #include "sunfleck/image.h"
+#include "sunfleck/integrate.h"
 #include "sunfleck/mapping.h"
 #include "sunfleck/points.h"
 #include "sunfleck/render.h"

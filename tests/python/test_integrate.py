@@ -1,0 +1,218 @@
+# SPDX-FileCopyrightText: 2026 The Sunfleck developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""integrate: known answers over every pattern, honesty, interruption, exceptions, bad input."""
+
+import dataclasses
+import math
+import os
+import signal
+import threading
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import sunfleck as sf
+
+Block = NDArray[np.float64]
+
+
+def circle(u: Block) -> Block:
+    return np.where(u[:, 0] ** 2 + u[:, 1] ** 2 < 1.0, 4.0, 0.0)
+
+
+@pytest.mark.parametrize("pattern", sorted(sf.PATTERNS))
+@pytest.mark.parametrize("scramble", ["default", None])
+def test_pi_over_every_pattern(pattern: str, scramble: str | None) -> None:
+    pi = sf.integrate(circle, d=2, pattern=pattern, scramble=scramble, tolerance=0.01, seed=1)
+    assert pi.stop_reason == "met"
+    assert 0 < pi.half_width <= 0.01
+    # One interval for each: at 0.95, twice the half-width is missed in some 1e-4 of the cases.
+    assert abs(pi.value - math.pi) <= 2 * pi.half_width
+    assert pi.history[-1] == (pi.samples, pi.value, pi.half_width)
+    assert [look.samples for look in pi.history] == sorted({look.samples for look in pi.history})
+
+
+@pytest.mark.parametrize(("pattern", "tolerance"), [("sobol", 1e-3), ("random", 3e-2), ("halton", 1e-2)])
+def test_coverage_is_what_was_asked_for(pattern: str, tolerance: float) -> None:
+    # 200 seeds: four binomial deviations at 0.9 are 0.085; above is as good as at.
+    exact = math.prod(k * (math.exp(1 / k) - 1) for k in (1, 2, 3))
+    runs = [
+        sf.integrate(lambda u: np.exp(u @ [1, 1 / 2, 1 / 3]), 3, pattern, tolerance, confidence=0.9, seed=seed)
+        for seed in range(200)
+    ]
+    assert np.mean([abs(r.value - exact) <= r.half_width for r in runs]) > 0.9 - 0.085
+    assert [r.stop_reason for r in runs].count("met") >= 194
+
+
+def test_a_plain_tolerance_is_absolute_and_a_relative_one_follows_the_value() -> None:
+    def large(u: Block) -> Block:
+        return 1e6 * (1 + u[:, 0])
+
+    relative = sf.integrate(large, 1, tolerance=sf.Tolerance(relative=1e-4))
+    assert relative.stop_reason == "met"
+    assert relative.half_width <= 1e-4 * relative.value
+    absolute = sf.integrate(large, 1, tolerance=1e-4, max_samples=2**16)
+    assert absolute.samples > relative.samples
+
+
+def test_the_same_seed_gives_the_same_result_for_any_threads() -> None:
+    runs = [sf.integrate(circle, threads=threads, seed=seed) for threads, seed in ((1, 5), (3, 5), (None, 5), (1, 6))]
+    assert runs[0] == runs[1] == runs[2]
+    assert runs[0].value != runs[3].value
+
+
+def test_blocks_are_the_function_s_own() -> None:
+    kept: list[Block] = []
+
+    def greedy(u: Block) -> Block:
+        assert u.flags.c_contiguous
+        assert u.flags.writeable
+        kept.append(u)
+        before: Block = u.sum(axis=1)
+        u[:] = -1
+        return before
+
+    r = sf.integrate(greedy, 3, tolerance=1e-3)
+    assert abs(r.value - 1.5) <= 2 * r.half_width
+    assert sum(len(u) for u in kept) == r.samples
+    assert all((u == -1).all() for u in kept)
+    assert all(u.shape[1] == 3 and u.dtype == np.float64 for u in kept)
+
+
+@pytest.mark.parametrize("dtype", ["bool", "int64", "float32", "float64"])
+def test_any_real_dtype_may_be_returned(dtype: str) -> None:
+    r = sf.integrate(lambda u: (u[:, 0] < 0.5).astype(dtype), 1, tolerance=1e-2)
+    assert abs(r.value - 0.5) <= r.half_width
+
+
+def test_equal_samples_leave_an_error() -> None:
+    r = sf.integrate(lambda u: np.zeros(len(u)), tolerance=1e-3)
+    assert (r.value, r.stop_reason) == (0, "met")
+    assert r.half_width == pytest.approx(-math.log(0.05) / r.samples)
+    ranged = sf.integrate(lambda u: np.zeros(len(u)), tolerance=1e-1, value_range=(0, 10))
+    assert ranged.half_width == pytest.approx(-10 * math.log(0.05) / ranged.samples)
+
+
+def test_values_that_are_not_finite_make_it_suspicious() -> None:
+    r = sf.integrate(lambda u: np.where(u[:, 0] < 0.1, np.nan, 1 + u[:, 1]), tolerance=1e-2)
+    assert r.stop_reason == "suspicious"
+    assert r.nonfinite == pytest.approx(0.1 * r.samples, rel=0.1)
+    assert r.value == pytest.approx(1.5, abs=0.01)
+    assert f"{r.nonfinite} not finite" in str(r)
+
+
+def test_a_heavy_tail_makes_it_suspicious() -> None:
+    reasons = [sf.integrate(lambda u: u[:, 0] ** -0.6, 1, tolerance=0.05, seed=s).stop_reason for s in range(20)]
+    assert reasons.count("suspicious") >= 18
+
+
+def test_a_known_range_holds_at_every_look() -> None:
+    missed = 0
+    for seed in range(100):
+        r = sf.integrate(lambda u: u[:, 0] < 0.01, 1, "random", 3e-3, confidence=0.9, value_range=(0, 1), seed=seed)
+        missed += any(abs(look.value - 0.01) > look.half_width * (1 + 1e-12) for look in r.history)
+        assert r.stop_reason == "met"
+    assert missed <= 10 + 12  # a tenth, and four deviations of 3
+
+
+def test_max_samples_stops_it() -> None:
+    r = sf.integrate(circle, tolerance=1e-9, max_samples=5000)
+    assert r.stop_reason == "max samples"
+    assert r.samples == 4096
+    assert r.half_width > 1e-9
+
+
+def test_an_exception_of_the_function_is_the_caller_s() -> None:
+    class Own(Exception):
+        pass
+
+    calls = 0
+
+    def fail(u: Block) -> Block:
+        nonlocal calls
+        calls += 1
+        if calls == 2:
+            raise Own("mine")
+        return circle(u)
+
+    with pytest.raises(Own, match="mine"):
+        sf.integrate(fail, tolerance=1e-9)
+    assert calls == 2
+
+
+def test_ctrl_c_returns_what_is_known() -> None:
+    calls = 0
+
+    def interrupted(u: Block) -> Block:
+        nonlocal calls
+        calls += 1
+        if calls == 6:
+            os.kill(os.getpid(), signal.SIGINT)
+        return circle(u)
+
+    r = sf.integrate(interrupted, tolerance=1e-9)
+    assert r.stop_reason == "interrupted"
+    assert abs(r.value - math.pi) <= 3 * r.half_width
+    assert r.samples < 2**24
+
+
+def test_other_threads_run_meanwhile() -> None:
+    results: dict[int, sf.Integral] = {}
+
+    def work(seed: int) -> None:
+        results[seed] = sf.integrate(circle, seed=seed)
+
+    threads = [threading.Thread(target=work, args=(seed,)) for seed in range(4)]
+    for t in threads:
+        t.start()
+    for t in threads:
+        t.join()
+    assert all(results[seed] == sf.integrate(circle, seed=seed) for seed in range(4))
+
+
+def test_the_result_is_a_record() -> None:
+    r = sf.integrate(circle, tolerance=0.05)
+    assert dataclasses.asdict(r)["samples"] == r.samples
+    assert (r.confidence, r.replicates, r.shifted) == (0.95, 16, False)
+    assert "95 %" in str(r)
+    assert str(r).endswith("met")
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "match"),
+    [
+        ({"f": 3}, TypeError, "f is 3"),
+        ({"f": lambda u: u}, ValueError, r"f returned shape \(1024, 2\) for 1024 points"),
+        ({"f": lambda u: u[:, 0] * 1j}, TypeError, "complex"),
+        ({"f": lambda u: None}, TypeError, "object"),
+        ({"f": lambda u: 5 * u[:, 0], "value_range": (0, 1)}, ValueError, "outside the range of values"),
+        ({"d": 0}, ValueError, "dims is 0"),
+        ({"pattern": "sobble"}, ValueError, "sobble"),
+        ({"scramble": "permuted"}, ValueError, "scramble"),
+        ({"tolerance": 0}, ValueError, "tolerance is 0"),
+        ({"tolerance": -1}, ValueError, "tolerance is -1"),
+        ({"tolerance": math.nan}, ValueError, "tolerance is nan"),
+        ({"tolerance": "small"}, TypeError, "tolerance"),
+        ({"confidence": 1}, ValueError, "confidence is 1"),
+        ({"max_samples": 10}, ValueError, "max_samples is 10"),
+        ({"min_samples": 1}, ValueError, "min_samples is 1"),
+        ({"replicates": 1}, ValueError, "replicates is 1"),
+        ({"value_range": (1, 0)}, ValueError, r"\[1, 0\]"),
+        ({"value_range": (0, math.inf)}, ValueError, "value_range"),
+        ({"value_range": 4}, ValueError, "value_range"),
+        ({"threads": 0}, ValueError, "threads is 0"),
+        ({"seed": -1}, ValueError, "seed is -1"),
+    ],
+)
+def test_bad_input_is_named(options: dict[str, Any], error: type[Exception], match: str) -> None:
+    with pytest.raises(error, match=match):
+        sf.integrate(**{"f": circle, **options})
+
+
+@pytest.mark.parametrize("values", [{"absolute": -1}, {"relative": math.inf}, {"absolute": math.nan}, {}])
+def test_a_bad_tolerance_is_refused(values: dict[str, float]) -> None:
+    with pytest.raises(ValueError, match="tolerance"):
+        sf.Tolerance(**values)
