@@ -44,6 +44,14 @@ struct sf_pattern_method {
     void (*make)(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
 };
 
+/* points.c: whether the pattern has so many dimensions, and points first .. first + count - 1. */
+sf_status sf_points_check_pattern(sf_pattern pattern, uint32_t dims, sf_error *error);
+sf_status sf_points_check_range(const sf_points_options *options, uint64_t first, uint64_t count, sf_error *error);
+
+/* points.c: checks all options and makes the tables; frees what a set holds, not the set. */
+sf_status sf_point_set_init(sf_point_set *set, const sf_points_options *options, sf_error *error);
+void sf_point_set_release(sf_point_set *set);
+
 /* sobol.c */
 sf_status sf_sobol_prepare(sf_point_set *set, sf_error *error);
 void sf_sobol_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);

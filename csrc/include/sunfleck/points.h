@@ -32,6 +32,7 @@ typedef enum sf_pattern {
     SF_PATTERN_JITTERED,    /* a random point in each cell of a grid; needs its total */
     SF_PATTERN_HALTON,      /* radical inverses in the first d primes */
     SF_PATTERN_SOBOL,       /* Joe & Kuo's direction numbers, in the natural order of the index */
+    SF_PATTERN_SZ,          /* (0, 2)-sequences in base 2 that together are (0, 4) in base 4, … */
     SF_PATTERN_COUNT
 } sf_pattern;
 
@@ -41,8 +42,12 @@ typedef enum sf_scramble {
     SF_SCRAMBLE_NONE,        /* the plain pattern: the seed is not used (patterns that are random
                                 by nature draw on it all the same) */
     SF_SCRAMBLE_PERMUTED,    /* halton: each digit, to infinity, by a random permutation of its place */
+    SF_SCRAMBLE_SHIFT,       /* one random word a dimension, XORed into every point's (sobol, sz) */
+    SF_SCRAMBLE_LMS,         /* sobol, sz: a random lower triangular matrix a dimension, and a shift
+                                (Matousek 1998) */
     SF_SCRAMBLE_OWEN,        /* sobol: nested uniform scrambling by a hash (Burley 2020, with
                                 Vegdahl's 2021 constants) */
+    SF_SCRAMBLE_NESTED,      /* sobol, sz: nested uniform scrambling (Owen 1995), 64-bit keys */
     SF_SCRAMBLE_COUNT
 } sf_scramble;
 
