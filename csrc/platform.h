@@ -10,11 +10,12 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/mman.h>
 #include <time.h>
 
 #if defined(__x86_64__)
-#include <xmmintrin.h>
+#include <emmintrin.h>
 #endif
 
 #define SF_RESTRICT restrict
@@ -64,6 +65,30 @@ static inline void *sf_pages_alloc(size_t bytes) {
 }
 static inline void sf_pages_free(void *memory, size_t bytes) {
     if (memory) munmap(memory, bytes ? bytes : 1);
+}
+
+/* Copies to memory that will not be read soon, past the caches where the processor can: a store of
+ * its own kind then need not fetch the line that it overwrites. After the last of such copies,
+ * sf_stream_end makes them visible to other threads. */
+static inline void sf_stream_copy(void *to, const void *from, size_t bytes) {
+#if defined(__x86_64__)
+    char *out = (char *)to;
+    const char *in = (const char *)from;
+    size_t head = (0 - (uintptr_t)to) % 64; /* whole lines from here on */
+    if (head > bytes) head = bytes;
+    memcpy(out, in, head);
+    for (out += head, in += head, bytes -= head; bytes >= 64; out += 64, in += 64, bytes -= 64)
+        for (int i = 0; i < 4; ++i)
+            _mm_stream_si128((__m128i *)out + i, _mm_loadu_si128((const __m128i *)in + i));
+    memcpy(out, in, bytes);
+#else
+    memcpy(to, from, bytes);
+#endif
+}
+static inline void sf_stream_end(void) {
+#if defined(__x86_64__)
+    _mm_sfence();
+#endif
 }
 
 /* A counter that threads advance together. */

@@ -15,6 +15,9 @@
 #define TAKES(scramble) (1u << (scramble))
 #define ANY_COUNT UINT64_MAX
 #define COUNT_32 (UINT64_C(1) << 32)
+#define NET_SCRAMBLES                                                                                          \
+    (TAKES(SF_SCRAMBLE_NONE) | TAKES(SF_SCRAMBLE_SHIFT) | TAKES(SF_SCRAMBLE_LMS) | TAKES(SF_SCRAMBLE_OWEN) | \
+     TAKES(SF_SCRAMBLE_NESTED))
 
 static const sf_pattern_method methods[SF_PATTERN_COUNT] = {
     [SF_PATTERN_UNIFORM] = {"uniform", "centres of a regular grid; aliases, and needs its total ahead",
@@ -30,14 +33,15 @@ static const sf_pattern_method methods[SF_PATTERN_COUNT] = {
                            SF_HALTON_MAX_DIMS, ANY_COUNT, 0, SF_SCRAMBLE_PERMUTED,
                            TAKES(SF_SCRAMBLE_NONE) | TAKES(SF_SCRAMBLE_PERMUTED), sf_halton_prepare, sf_halton_make},
     [SF_PATTERN_SOBOL] = {"sobol", "Sobol' sequence with Joe & Kuo's direction numbers, Owen-scrambled (Burley 2020)",
-                          SF_SOBOL_MAX_DIMS, COUNT_32, 0, SF_SCRAMBLE_OWEN,
-                          TAKES(SF_SCRAMBLE_NONE) | TAKES(SF_SCRAMBLE_OWEN), sf_sobol_prepare, sf_sobol_make},
+                          SF_SOBOL_MAX_DIMS, COUNT_32, 0, SF_SCRAMBLE_OWEN, NET_SCRAMBLES, sf_net_prepare, sf_net_make},
+    [SF_PATTERN_SZ] = {"sz", "pairs of dimensions are (0, 2)-sequences in base 2, fours (0, 4) in base 4 (Ahmed 2024)",
+                       SF_SZ_MAX_DIMS, COUNT_32, 0, SF_SCRAMBLE_OWEN, NET_SCRAMBLES, sf_net_prepare, sf_net_make},
 };
 
 static const struct {
     const char *name, *description;
 } scrambles[SF_SCRAMBLE_COUNT] = {
-    [SF_SCRAMBLE_DEFAULT] = {"default", "the pattern's own: owen for sobol, permuted for halton, none elsewhere"},
+    [SF_SCRAMBLE_DEFAULT] = {"default", "the pattern's own: owen for sobol and sz, permuted for halton, none elsewhere"},
     [SF_SCRAMBLE_NONE] = {"none", "the plain pattern"},
     [SF_SCRAMBLE_PERMUTED] = {"permuted", "each digit by a random permutation of its place"},
     [SF_SCRAMBLE_SHIFT] = {"shift", "one random word a dimension, XORed into every point's (digital shift)"},
@@ -114,6 +118,14 @@ sf_status sf_points_check_pattern(sf_pattern pattern, uint32_t dims, sf_error *e
     return SF_STATUS_OK;
 }
 
+sf_status sf_points_check_dims(const sf_points_options *options, sf_error *error) {
+    if (options->pad == 0 || options->dims == 0) return sf_points_check_pattern(options->pattern, options->dims, error);
+    if (options->dims > SF_POINTS_MAX_DIMS)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "dims is %" PRIu32 "; padded sets have 1 .. %u dimensions",
+                       options->dims, SF_POINTS_MAX_DIMS);
+    return sf_points_check_pattern(options->pattern, 1, error); /* the set's own few dimensions every net has */
+}
+
 sf_status sf_pattern_valid_counts(sf_pattern pattern, uint32_t dims, uint64_t n, uint64_t *below, uint64_t *above,
                                   sf_error *error) {
     sf_status status = sf_points_check_pattern(pattern, dims, error);
@@ -149,6 +161,21 @@ static sf_status check_scramble(sf_pattern pattern, sf_scramble scramble, sf_err
                    methods[pattern].name, taken);
 }
 
+/* Padded sets need a scramble that gives each set an order and keys of its own. */
+static sf_status check_pad(const sf_points_options *options, sf_error *error) {
+    if (options->pad == 0) return SF_STATUS_OK;
+    if (options->pad != 2 && options->pad != 4)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "pad is %" PRIu32 "; it is 0, 2 or 4", options->pad);
+    const sf_pattern_method *method = &methods[options->pattern];
+    if (options->pattern != SF_PATTERN_SOBOL && options->pattern != SF_PATTERN_SZ)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "pad is %" PRIu32 ", which sobol and sz take, and %s does not",
+                       options->pad, method->name);
+    sf_scramble scramble = options->scramble ? options->scramble : method->default_scramble;
+    if (scramble == SF_SCRAMBLE_OWEN || scramble == SF_SCRAMBLE_NESTED) return SF_STATUS_OK;
+    return sf_fail(error, SF_STATUS_INVALID_VALUE, "pad is %" PRIu32 ", which takes scramble owen or nested, not %s",
+                   options->pad, sf_scramble_name(scramble));
+}
+
 sf_status sf_points_check_range(const sf_points_options *options, uint64_t first, uint64_t count, sf_error *error) {
     const sf_pattern_method *method = &methods[options->pattern];
     uint64_t most = method->max_count;
@@ -169,20 +196,22 @@ sf_status sf_points_check_range(const sf_points_options *options, uint64_t first
 
 void sf_point_set_release(sf_point_set *set) {
     sf_aligned_free(set->sides);
-    sf_sobol_release(set->sobol);
+    sf_net_release(set->net);
+    sf_pad_release(set->padded);
     sf_halton_release(set->halton, set->options.dims);
 }
 
 sf_status sf_point_set_init(sf_point_set *set, const sf_points_options *options, sf_error *error) {
     memset(set, 0, sizeof *set);
-    sf_status status = sf_points_check_pattern(options->pattern, options->dims, error);
+    sf_status status = sf_points_check_dims(options, error);
     if (status == SF_STATUS_OK) status = check_scramble(options->pattern, options->scramble, error);
+    if (status == SF_STATUS_OK) status = check_pad(options, error);
     if (status != SF_STATUS_OK) return status;
     set->method = &methods[options->pattern];
     set->options = *options;
     if (options->scramble == SF_SCRAMBLE_DEFAULT) set->options.scramble = set->method->default_scramble;
     if (!set->method->prepare || (set->method->needs_total && !options->total)) return SF_STATUS_OK;
-    status = set->method->prepare(set, error);
+    status = options->pad ? sf_pad_prepare(set, error) : set->method->prepare(set, error);
     if (status != SF_STATUS_OK) sf_point_set_release(set);
     return status;
 }

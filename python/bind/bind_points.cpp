@@ -28,11 +28,13 @@ sf_scramble find_scramble(const std::string &name) {
 
 template <class T, sf_status (*Fill)(const sf_points_options *, size_t, T *, sf_error *)>
 void fill(nb::ndarray<T, nb::ndim<2>, nb::c_contig, nb::device::cpu> out, const std::string &pattern,
-          const std::string &scramble, uint32_t dims, uint64_t seed, uint64_t first, uint32_t threads) {
+          const std::string &scramble, uint32_t dims, uint32_t pad, uint64_t seed, uint64_t first,
+          uint32_t threads) {
     sf_points_options options = sf_points_options_default();
     options.pattern = find_pattern(pattern);
     options.scramble = find_scramble(scramble);
     options.dims = dims;
+    options.pad = pad;
     options.seed = seed;
     options.first = first;
     options.threads = threads;
@@ -45,12 +47,14 @@ void fill(nb::ndarray<T, nb::ndim<2>, nb::c_contig, nb::device::cpu> out, const 
 void bind_points(nb::module_ &m) {
     m.def("patterns", [] { return listed(sf_pattern_name, sf_pattern_description); });
 
+    m.def("scrambles", [] { return listed(sf_scramble_name, sf_scramble_description); });
+
     m.def("fill_points", &fill<float, sf_points_fill_f32>, "out"_a.noconvert(), "pattern"_a, "scramble"_a, "dims"_a,
-          "seed"_a, "first"_a, "threads"_a);
+          "pad"_a, "seed"_a, "first"_a, "threads"_a);
     m.def("fill_points", &fill<double, sf_points_fill_f64>, "out"_a.noconvert(), "pattern"_a, "scramble"_a, "dims"_a,
-          "seed"_a, "first"_a, "threads"_a);
+          "pad"_a, "seed"_a, "first"_a, "threads"_a);
     m.def("fill_points", &fill<uint32_t, sf_points_fill_u32>, "out"_a.noconvert(), "pattern"_a, "scramble"_a, "dims"_a,
-          "seed"_a, "first"_a, "threads"_a);
+          "pad"_a, "seed"_a, "first"_a, "threads"_a);
 
     m.def(
         "valid_counts",

@@ -21,7 +21,7 @@ from sunfleck.error import Error
 from sunfleck.estimate import Moments, VectorMoments
 from sunfleck.load import load
 from sunfleck.mapping import MAPPINGS
-from sunfleck.points import PATTERNS, points, valid_counts
+from sunfleck.points import PATTERNS, SCRAMBLES, points, valid_counts
 from sunfleck.render import STOP_REASONS, Image, Progress, Summary, Tolerance, render
 from sunfleck.rng import RNGS, Rng
 from sunfleck.scene import Camera, Mesh, Plan, PlanDimensions, Scene, SceneInfo
@@ -32,6 +32,7 @@ __all__ = [
     "MAPPINGS",
     "PATTERNS",
     "RNGS",
+    "SCRAMBLES",
     "STOP_REASONS",
     "Camera",
     "Error",

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* Rows of digital nets in base 2 (sobol, sz), their scrambles, and their padded sets. */
+#ifndef SUNFLECK_NET_KERNELS_H
+#define SUNFLECK_NET_KERNELS_H
+
+#include "level.h"
+#include "points_kernels.h"
+#include "sunfleck/points.h"
+
+/* A net laid out for filling rows in order. A block of 2^block_bits points shares the high bits
+ * of its index: its words are those of block 0 (`block`) XOR one row of the high bits, and the
+ * row of the next block differs by one row of `steps`. Rows are repeated until they are long
+ * enough for a vector loop.
+ *
+ * Arrays come in pairs: [0] holds the upper 32 bits of a coordinate, [1] the 32 below, NULL where
+ * these do not change with the index. With `keys` all words are bit-reversed. */
+typedef struct sf_net_tables {
+    uint32_t dims;
+    unsigned index_bits; /* that the greatest index has */
+    unsigned block_bits;
+    uint32_t period;      /* words of a repeated row, a multiple of dims that divides a block's words */
+    uint32_t *columns[2]; /* [index_bits][dims]: row k is the XOR of the direction numbers 0 .. k */
+    uint32_t *block[2];   /* [2^block_bits][dims] */
+    uint32_t *steps[2];   /* [index_bits - block_bits][period]: XOR of the numbers block_bits .. block_bits + k */
+    uint32_t *shift[2];   /* [dims]: of a digital shift; NULL: none */
+    uint32_t *keys;       /* [period]: of the Owen scramble */
+    uint64_t *nested;     /* [period]: keys of nested scrambling */
+} sf_net_tables;
+
+typedef struct sf_net_kernels {
+    /* The repeated rows, upper and lower, of the block in which `index` lies. */
+    void (*start)(const sf_net_tables *tables, uint64_t index, uint32_t *state);
+    /* Points first .. first + rows - 1 as numbers of a type, without nested scrambling; `state` is
+     * that of the block in which `first` lies, and on return that of first + rows. */
+    void (*rows)(const sf_net_tables *tables, uint64_t first, size_t rows, uint32_t *state, sf_number_type type,
+                 void *out);
+    /* The words below those of Owen-scrambled points, or of points scrambled in nested fashion:
+     * the latter also replaces the words by the scrambled ones. `low` may be NULL there. */
+    void (*owen_low)(size_t count, const uint32_t *high, const uint32_t *keys, uint32_t period, uint32_t *low);
+    void (*nested)(size_t count, const uint64_t *keys, uint32_t period, uint32_t *high, uint32_t *low);
+    /* out[i] = sf_owen_scramble32(first + i, key). */
+    void (*shuffle)(uint32_t first, size_t count, uint32_t key, uint32_t *out);
+    /* out[i * stride] = the Owen scramble of table[indices[i] & 255] ^ start, both reversed. */
+    void (*look_up)(size_t count, const uint32_t *indices, const uint32_t table[256], uint32_t start, uint32_t key,
+                    size_t stride, uint32_t *out);
+} sf_net_kernels;
+
+SF_KERNELS(sf_net_kernels)
+
+/* What continues an Owen-scrambled word below its 32 bits. Distinct indices have distinct words,
+ * so that Owen's flips beyond depth 32 are independent uniform bits: any hash of the word. */
+static inline uint32_t sf_owen_low_word(uint32_t word, uint32_t key) {
+    word = (word ^ key ^ 0x6a09e667u) * 0x7feb352du;
+    word = (word ^ word >> 15) * 0x846ca68bu;
+    return word ^ word >> 16;
+}
+
+/* Owen's scrambling by the letter: bit k of a word, from the top, is flipped by a bit that
+ * belongs to the node of the binary tree which the k bits above it lead to. Node 2^k + path is
+ * the path's; six levels share one hash of 64 bits, that of the subtree's root, of which each of
+ * the 63 nodes has a bit of its own. The 53 bits of a double come out at the top of the result:
+ * the bits of a word beyond 32 are 0. */
+enum { SF_NESTED_LEVELS = 6 };
+
+static inline uint64_t sf_nested_flips(uint64_t key, uint64_t path, unsigned depth) {
+    return sf_hash64(key, UINT64_C(1) << depth | path);
+}
+
+/* Levels depth .. depth + levels - 1 of the flips, right-aligned, where `bits` are those of the
+ * word at these levels, right-aligned too. */
+static inline uint64_t sf_nested_subtree(uint64_t flips, uint64_t bits, unsigned levels) {
+    uint64_t node = 1, result = 0;
+    for (unsigned level = levels; level-- > 0;) {
+        result = result << 1 | (flips >> node & 1);
+        node = node << 1 | (bits >> level & 1);
+    }
+    return result;
+}
+
+#endif
