@@ -105,6 +105,18 @@ static inline size_t sf_atomic_load(const sf_atomic_size *a) {
     return __atomic_load_n(&a->value, __ATOMIC_ACQUIRE);
 }
 
+/* What it was before; work done by those that subtracted before is seen by who reads the result. */
+static inline size_t sf_atomic_subtract(sf_atomic_size *a, size_t step) {
+    return __atomic_fetch_sub(&a->value, step, __ATOMIC_ACQ_REL);
+}
+
+/* Tells the processor that this is a loop which waits. */
+static inline void sf_pause(void) {
+#if defined(__x86_64__)
+    _mm_pause();
+#endif
+}
+
 /* How many bits of x are 1. */
 static inline unsigned sf_count_bits(uint32_t x) { return (unsigned)__builtin_popcount(x); }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /* Filling arrays with points, by chunks on threads. */
+#include "crew.h"
 #include "error.h"
 #include "platform.h"
 #include "points_set.h"
@@ -70,11 +71,13 @@ static void *fill_share(void *argument) {
     return NULL;
 }
 
-/* Threads pay from some 2^16 words each: starting one takes as long as making them. */
+/* Threads pay from some 2^16 words each, as starting one takes as long as making them; a crew's,
+ * which need not be started, from 2^13. */
 static unsigned useful_threads(const sf_points_options *options, size_t count) {
-    enum { WORDS_PER_THREAD = 1 << 16, MAX_THREADS = 256 };
+    enum { MAX_THREADS = SF_CREW_MAX + 1 };
+    size_t least_words = (size_t)1 << (options->crew ? 13 : 16);
     unsigned threads = options->threads ? options->threads : sf_processor_count();
-    size_t most = count / ((size_t)WORDS_PER_THREAD / options->dims + 1);
+    size_t most = count / (least_words / options->dims + 1);
     if (threads > MAX_THREADS) threads = MAX_THREADS;
     return most < threads ? (unsigned)most + !most : threads;
 }
@@ -97,6 +100,19 @@ static void share_out(fill_job *jobs, unsigned threads, const sf_point_set *set,
                              .scratch = jobs[0].scratch + i * scratch_words(&set->options)};
 }
 
+static void fill_numbered(void *user, unsigned share) { fill_share((fill_job *)user + share); }
+
+static void work_shares(fill_job *jobs, unsigned threads, sf_crew *crew) {
+    if (threads > 1 && crew && sf_crew_run(crew, threads, fill_numbered, jobs)) return;
+    /* The last share is the caller's, and those whose thread could not be had. */
+    for (unsigned i = 0; i + 1 < threads; ++i)
+        jobs[i].started = pthread_create(&jobs[i].thread, NULL, fill_share, jobs + i) == 0;
+    for (unsigned i = threads; i-- > 0;)
+        if (!jobs[i].started) fill_share(jobs + i);
+    for (unsigned i = 0; i + 1 < threads; ++i)
+        if (jobs[i].started) pthread_join(jobs[i].thread, NULL);
+}
+
 static sf_status fill(const sf_point_set *set, uint64_t first, size_t count, sf_number_type type, void *out,
                       sf_error *error) {
     sf_status status = sf_points_check_range(&set->options, first, count, error);
@@ -108,13 +124,7 @@ static sf_status fill(const sf_point_set *set, uint64_t first, size_t count, sf_
     fill_job *jobs = (fill_job *)(void *)(scratch + threads * scratch_words(&set->options));
     jobs[0].scratch = scratch;
     share_out(jobs, threads, set, first, count, type, out);
-    /* The last share is the caller's, and those whose thread could not be had. */
-    for (unsigned i = 0; i + 1 < threads; ++i)
-        jobs[i].started = pthread_create(&jobs[i].thread, NULL, fill_share, jobs + i) == 0;
-    for (unsigned i = threads; i-- > 0;)
-        if (!jobs[i].started) fill_share(jobs + i);
-    for (unsigned i = 0; i + 1 < threads; ++i)
-        if (jobs[i].started) pthread_join(jobs[i].thread, NULL);
+    work_shares(jobs, threads, set->options.crew);
     sf_aligned_free(scratch);
     return SF_STATUS_OK;
 }

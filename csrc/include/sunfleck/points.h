@@ -84,6 +84,16 @@ sf_status sf_pattern_valid_counts(sf_pattern pattern, uint32_t dims, uint64_t n,
  * the nearest valid counts. */
 sf_status sf_grid_sides(uint64_t n, uint32_t dims, uint32_t *sides, sf_error *error);
 
+/* Threads that stay between fills, for arrays so small that to start threads takes as long as to
+ * fill them. A crew is empty at first and grows as fills ask; its threads sleep when there has
+ * been no work for 50 µs. Not across fork. Safe to share: a fill that finds the crew at work for
+ * another starts threads of its own. Destroy it when no fill uses it; NULL is legal. */
+typedef struct sf_crew sf_crew;
+#define SF_CREW_MAX 255u /* threads */
+
+sf_status sf_crew_create(sf_crew **crew, sf_error *error);
+void sf_crew_destroy(sf_crew *crew);
+
 typedef struct sf_points_options {
     sf_pattern pattern;   /* default sobol */
     sf_scramble scramble; /* default SF_SCRAMBLE_DEFAULT: the pattern's own */
@@ -98,6 +108,7 @@ typedef struct sf_points_options {
     uint64_t total;       /* how many points there will be, for patterns that need to know: first +
                              count at most total; 0 (default): first + count */
     uint32_t threads;     /* 1 (default) ..; 0: one for each processor. Changes no bit */
+    sf_crew *crew;        /* where they come from; NULL (default): started for the call */
 } sf_points_options;
 
 sf_points_options sf_points_options_default(void);
