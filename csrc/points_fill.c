@@ -47,7 +47,7 @@ static void make_numbers(sf_points_cursor *cursor, uint64_t first, size_t rows, 
         return;
     }
     uint32_t *high = type == SF_NUMBER_U32 ? out : words, *low = words + chunk_words(&set->options);
-    set->method->make(cursor, first, rows, high, type == SF_NUMBER_F64 ? low : NULL);
+    (set->padded ? sf_pad_make : set->method->make)(cursor, first, rows, high, type == SF_NUMBER_F64 ? low : NULL);
     if (type == SF_NUMBER_F32) cursor->kernels->f32(count, high, out);
     if (type == SF_NUMBER_F64) cursor->kernels->f64(count, high, low, out);
 }

@@ -29,6 +29,7 @@
  * bits: they leave a sequence's quality as it is. */
 #include <assert.h>
 
+#include "points_set.h"
 #include "sunfleck/points.h"
 
 /* The nim product of two nimbers below 2^(2 * half): (a + A F)(b + B F) with F = 2^half, whose
@@ -36,54 +37,54 @@
 static uint32_t nim_product(uint32_t x, uint32_t y, unsigned half) {
     if (half == 0) return x & y;
     uint32_t mask = (UINT32_C(1) << half) - 1, a = x & mask, b = y & mask, top_a = x >> half, top_b = y >> half;
+    if (half == 1) return ((a & top_b) ^ (top_a & b) ^ (top_a & top_b)) << 1 | ((a & b) ^ (top_a & top_b));
     uint32_t low = nim_product(a, b, half / 2), high = nim_product(top_a, top_b, half / 2);
     uint32_t cross = nim_product(a ^ top_a, b ^ top_b, half / 2) ^ low;
     return cross << half | (low ^ nim_product(high, UINT32_C(1) << (half - 1), half / 2));
 }
 
-/* The product of a nimber below 2^bits with each digit of `bits` bits of `digits`. */
-static uint32_t scale_digits(uint32_t digits, uint32_t factor, unsigned bits) {
-    uint32_t ones = UINT32_MAX / ((UINT32_C(1) << bits) - 1), result = 0;
-    for (unsigned i = 0; i < bits; ++i)
-        result ^= (digits >> i & ones) * nim_product(UINT32_C(1) << i, factor, bits / 2);
-    return result;
-}
-
-/* The digits of f(t + a). With f = g + t^h k, g of lower degree than h = 2^s, and (t + a)^h =
- * t^h + a^h: the upper half is k(t + a), the lower g(t + a) + a^h k(t + a); powers[s] is a^h. */
-static uint32_t shift_polynomial(uint32_t digits, const uint32_t powers[5], unsigned bits) {
-    for (unsigned width = 16, s = 0; width >= bits; width /= 2) {
-        for (s = 0; bits << s < width; ++s) continue;
-        uint32_t lower = UINT32_MAX / ((UINT32_C(1) << width) + 1);
-        digits ^= scale_digits(digits >> width & lower, powers[s], bits);
+/* One halving of shift_polynomials: adds `factor` times the upper digits of every pair of `width`
+ * bits to the lower ones. A digit's product is the sum of those of its bits. */
+static void add_upper(uint32_t *digits, unsigned count, uint32_t factor, unsigned bits, unsigned width) {
+    uint32_t ones = UINT32_MAX / ((UINT32_C(1) << bits) - 1) & UINT32_MAX / ((UINT32_C(1) << width) + 1);
+    uint32_t products[16];
+    for (unsigned b = 0; b < bits; ++b) products[b] = nim_product(UINT32_C(1) << b, factor, bits / 2);
+    for (unsigned i = 0; i < count; ++i) {
+        uint32_t upper = digits[i] >> width, sum = 0;
+        for (unsigned b = 0; b < bits; ++b) sum ^= (upper >> b & ones) * products[b];
+        digits[i] ^= sum;
     }
-    return digits;
 }
 
-/* Applies M(dimension) to each of `count` indices. */
-static void transform(uint32_t dimension, uint32_t *digits, unsigned count) {
+/* From the digits of f(t) to those of f(t + a), for `count` words. With f = g + t^h k, g of lower
+ * degree than h, a power of two, and (t + a)^h = t^h + a^h: the upper half of the digits is that of
+ * k(t + a), the lower g(t + a) + a^h k(t + a). */
+static void shift_polynomials(uint32_t *digits, unsigned count, uint32_t a, unsigned bits) {
+    for (unsigned width = bits; width <= 16; width *= 2) {
+        add_upper(digits, count, a, bits, width);
+        a = nim_product(a, a, bits / 2);
+    }
+}
+
+void sf_sz_transform(uint32_t dimension, uint32_t *digits, unsigned count) {
     for (unsigned r = 5; r-- > 0;) {
         unsigned bits = 1u << r;
-        uint32_t part = r ? dimension & ((1u << bits) - (1u << bits / 2)) : dimension & 1, powers[5];
+        uint32_t part = r ? dimension & ((1u << bits) - (1u << bits / 2)) : dimension & 1;
         if (!part) continue;
         for (unsigned k = 0; k < r; ++k) part = nim_product(part, part, bits / 2);
-        for (unsigned s = 0; s < 5 - r; ++s) {
-            powers[s] = part;
-            part = nim_product(part, part, bits / 2);
-        }
-        for (unsigned i = 0; i < count; ++i) digits[i] = shift_polynomial(digits[i], powers, bits);
+        shift_polynomials(digits, count, part, bits);
     }
 }
 
 void sf_sz_matrix(uint32_t dimension, uint32_t columns[32]) {
     assert(dimension < SF_SZ_MAX_DIMS);
     for (unsigned k = 0; k < 32; ++k) columns[k] = UINT32_C(1) << k;
-    transform(dimension, columns, 32);
+    sf_sz_transform(dimension, columns, 32);
     for (unsigned k = 0; k < 32; ++k) columns[k] = sf_reverse_bits32(columns[k]);
 }
 
 uint32_t sf_sz_bits(uint32_t index, uint32_t dimension) {
     assert(dimension < SF_SZ_MAX_DIMS);
-    transform(dimension, &index, 1);
+    sf_sz_transform(dimension, &index, 1);
     return sf_reverse_bits32(index);
 }
