@@ -29,12 +29,8 @@ static uint64_t scramble_linearly(uint32_t word, uint64_t key) {
 
 static uint64_t scramble_nested(uint32_t word, uint64_t key) {
     uint64_t bits = (uint64_t)word << 32, flips = 0;
-    for (unsigned depth = 0; depth < 54; depth += SF_NESTED_LEVELS) {
-        unsigned below = 64 - SF_NESTED_LEVELS - depth;
-        uint64_t own = bits >> below & ((1u << SF_NESTED_LEVELS) - 1);
-        flips |= sf_nested_subtree(sf_nested_flips(key, bits >> 1 >> (63 - depth), depth), own, SF_NESTED_LEVELS)
-                 << below;
-    }
+    for (unsigned depth = 0; depth < SF_NESTED_DEPTH; depth += SF_NESTED_LEVELS)
+        flips |= sf_nested_flips(bits, depth, key);
     return bits ^ flips;
 }
 
@@ -261,15 +257,16 @@ sf_status sf_net_prepare(sf_point_set *set, sf_error *error) {
 
 /* ---- rows ---- */
 
-void sf_net_rows(sf_points_cursor *cursor, uint64_t first, size_t rows, sf_number_type type, void *out) {
+void sf_net_rows(sf_points_cursor *cursor, uint64_t first, size_t rows, sf_number_type type, int streams,
+                 void *out) {
     const sf_net_tables *t = cursor->set->net;
     if (cursor->next != first) cursor->net_kernels->start(t, first, cursor->state);
-    cursor->net_kernels->rows(t, first, rows, cursor->state, type, out);
+    cursor->net_kernels->rows(t, first, rows, cursor->state, type, streams, out);
     cursor->next = first + rows;
 }
 
 void sf_net_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low) {
     const sf_net_tables *t = cursor->set->net;
-    sf_net_rows(cursor, first, rows, SF_NUMBER_U32, high);
+    sf_net_rows(cursor, first, rows, SF_NUMBER_U32, 0, high);
     cursor->net_kernels->nested(rows * t->dims, t->nested, t->period, high, low);
 }

@@ -74,19 +74,23 @@ static size_t size_of(sf_number_type type) { return type == SF_NUMBER_F64 ? size
 
 /* Rows begin .. end - 1 of the block whose high bits are `state`. */
 static void fill_block(const sf_net_tables *t, size_t begin, size_t end, const uint32_t *state, sf_number_type type,
-                       char *out) {
+                       int streams, char *out) {
+    enum { STREAM_WORDS = 512 }; /* few enough for the processor to send while the next are made */
+    SF_ALIGNED(double) numbers[STREAM_WORDS];
     static void (*const fills[2][3])(const span *) = {{xor_f32, xor_f64, xor_u32}, {owen_f32, owen_f64, owen_u32}};
     void (*fill)(const span *) = fills[t->keys != NULL][type];
     size_t word = begin * t->dims, last = end * t->dims;
     while (word < last) {
         size_t offset = word % t->period, count = t->period - offset;
         if (count > last - word) count = last - word;
+        if (streams && count > STREAM_WORDS) count = STREAM_WORDS;
         span s = {count,
                   {t->block[0] + word, t->block[1] ? t->block[1] + word : NULL},
                   {state + offset, state + t->period + offset},
                   t->keys + (t->keys ? offset : 0),
-                  out};
+                  streams ? (void *)numbers : out};
         fill(&s);
+        if (streams) sf_stream_copy(out, numbers, count * size_of(type));
         word += count;
         out += count * size_of(type);
     }
@@ -107,12 +111,12 @@ static void step(const sf_net_tables *t, uint64_t number, uint32_t *state) {
 }
 
 static void rows(const sf_net_tables *t, uint64_t first, size_t count, uint32_t *state, sf_number_type type,
-                 void *out) {
+                 int streams, void *out) {
     size_t block = (size_t)1 << t->block_bits;
     char *to = out;
     while (count) {
         size_t begin = (size_t)(first & (block - 1)), some = block - begin < count ? block - begin : count;
-        fill_block(t, begin, begin + some, state, type, to);
+        fill_block(t, begin, begin + some, state, type, streams, to);
         first += some;
         count -= some;
         to += some * t->dims * size_of(type);
@@ -156,33 +160,27 @@ static void owen_low(size_t count, const uint32_t *SF_RESTRICT high, const uint3
 
 enum { RUN = 256 }; /* words that are scrambled together */
 
-/* XORs into flips[i] the flips of levels depth .. depth + levels - 1, at their place from the top
- * of 64 bits. */
-static void nested_levels(size_t n, const uint64_t *SF_RESTRICT keys, const uint64_t *SF_RESTRICT words,
-                          unsigned depth, unsigned levels, uint64_t *SF_RESTRICT flips) {
-    unsigned below = 64 - depth - levels;
-    uint64_t mask = (UINT64_C(1) << levels) - 1;
-    for (size_t i = 0; i < n; ++i) {
-        uint64_t path = words[i] >> 1 >> (63 - depth);
-        uint64_t hash = sf_nested_flips(keys[i], path, depth);
-        flips[i] |= sf_nested_subtree(hash, words[i] >> below & mask, levels) << below;
-    }
-}
-
-static void nested_run(size_t n, const uint64_t *keys, uint32_t *SF_RESTRICT high, uint32_t *SF_RESTRICT low) {
+static void nested_run(size_t n, const uint64_t *SF_RESTRICT keys, uint32_t *SF_RESTRICT high,
+                       uint32_t *SF_RESTRICT low) {
     uint64_t words[RUN], flips[RUN];
     for (size_t i = 0; i < n; ++i) {
         words[i] = (uint64_t)high[i] << 32;
         flips[i] = 0;
     }
-    unsigned bits = low ? 54 : 36;
-    for (unsigned depth = 0; depth < bits; depth += SF_NESTED_LEVELS)
-        nested_levels(n, keys, words, depth, SF_NESTED_LEVELS, flips);
+    unsigned depths = low ? SF_NESTED_DEPTH : 36; /* 32 and what the last subtree has beyond */
+    for (unsigned depth = 0; depth < depths; depth += SF_NESTED_LEVELS)
+        for (size_t i = 0; i < n; ++i) flips[i] |= sf_nested_flips(words[i], depth, keys[i]);
     for (size_t i = 0; i < n; ++i) high[i] ^= (uint32_t)(flips[i] >> 32);
     for (size_t i = 0; low && i < n; ++i) low[i] = (uint32_t)flips[i];
 }
 
 static void nested(size_t count, const uint64_t *keys, uint32_t period, uint32_t *high, uint32_t *low) {
+    uint64_t repeated[RUN];
+    for (size_t i = 0; period == 1 && i < RUN; ++i) repeated[i] = keys[0];
+    if (period == 1) {
+        keys = repeated;
+        period = RUN;
+    }
     for (size_t begin = 0, n; begin < count; begin += n) {
         size_t offset = begin % period;
         n = period - offset;
@@ -199,14 +197,9 @@ static void shuffle(uint32_t first, size_t count, uint32_t key, uint32_t *SF_RES
 }
 
 static void look_up(size_t count, const uint32_t *SF_RESTRICT indices, const uint32_t table[256], uint32_t start_word,
-                    uint32_t key, size_t stride, uint32_t *SF_RESTRICT out) {
-    uint32_t words[RUN];
-    for (size_t begin = 0, n; begin < count; begin += n) {
-        n = count - begin < RUN ? count - begin : RUN;
-        for (size_t i = 0; i < n; ++i) words[i] = table[indices[begin + i] & 255u] ^ start_word;
-        for (size_t i = 0; i < n; ++i) words[i] = owen_word(words[i], key);
-        for (size_t i = 0; i < n; ++i) out[(begin + i) * stride] = words[i];
-    }
+                    uint32_t key, uint32_t *SF_RESTRICT out) {
+    for (size_t i = 0; i < count; ++i) out[i] = table[indices[i] & 255u] ^ start_word;
+    for (size_t i = 0; i < count; ++i) out[i] = owen_word(out[i], key);
 }
 
 const sf_net_kernels SF_AT_LEVEL(sf_net_kernels) = {start, rows, owen_low, nested, shuffle, look_up};

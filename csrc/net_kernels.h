@@ -33,18 +33,19 @@ typedef struct sf_net_kernels {
     /* The repeated rows, upper and lower, of the block in which `index` lies. */
     void (*start)(const sf_net_tables *tables, uint64_t index, uint32_t *state);
     /* Points first .. first + rows - 1 as numbers of a type, without nested scrambling; `state` is
-     * that of the block in which `first` lies, and on return that of first + rows. */
+     * that of the block in which `first` lies, and on return that of first + rows. `streams`: past
+     * the caches, to be followed by sf_stream_end. */
     void (*rows)(const sf_net_tables *tables, uint64_t first, size_t rows, uint32_t *state, sf_number_type type,
-                 void *out);
+                 int streams, void *out);
     /* The words below those of Owen-scrambled points, or of points scrambled in nested fashion:
      * the latter also replaces the words by the scrambled ones. `low` may be NULL there. */
     void (*owen_low)(size_t count, const uint32_t *high, const uint32_t *keys, uint32_t period, uint32_t *low);
     void (*nested)(size_t count, const uint64_t *keys, uint32_t period, uint32_t *high, uint32_t *low);
     /* out[i] = sf_owen_scramble32(first + i, key). */
     void (*shuffle)(uint32_t first, size_t count, uint32_t key, uint32_t *out);
-    /* out[i * stride] = the Owen scramble of table[indices[i] & 255] ^ start, both reversed. */
+    /* out[i] = the Owen scramble of table[indices[i] & 255] ^ start, both reversed. */
     void (*look_up)(size_t count, const uint32_t *indices, const uint32_t table[256], uint32_t start, uint32_t key,
-                    size_t stride, uint32_t *out);
+                    uint32_t *out);
 } sf_net_kernels;
 
 SF_KERNELS(sf_net_kernels)
@@ -60,23 +61,20 @@ static inline uint32_t sf_owen_low_word(uint32_t word, uint32_t key) {
 /* Owen's scrambling by the letter: bit k of a word, from the top, is flipped by a bit that
  * belongs to the node of the binary tree which the k bits above it lead to. Node 2^k + path is
  * the path's; six levels share one hash of 64 bits, that of the subtree's root, of which each of
- * the 63 nodes has a bit of its own. The 53 bits of a double come out at the top of the result:
- * the bits of a word beyond 32 are 0. */
-enum { SF_NESTED_LEVELS = 6 };
+ * the 63 nodes has a bit of its own. Flips of the 54 levels of a double: nine hashes. */
+enum { SF_NESTED_LEVELS = 6, SF_NESTED_DEPTH = 54 };
 
-static inline uint64_t sf_nested_flips(uint64_t key, uint64_t path, unsigned depth) {
-    return sf_hash64(key, UINT64_C(1) << depth | path);
-}
-
-/* Levels depth .. depth + levels - 1 of the flips, right-aligned, where `bits` are those of the
- * word at these levels, right-aligned too. */
-static inline uint64_t sf_nested_subtree(uint64_t flips, uint64_t bits, unsigned levels) {
-    uint64_t node = 1, result = 0;
-    for (unsigned level = levels; level-- > 0;) {
-        result = result << 1 | (flips >> node & 1);
-        node = node << 1 | (bits >> level & 1);
+/* Flips of levels depth .. depth + 5 of a word whose bits are at the top of 64, in their places. */
+static inline uint64_t sf_nested_flips(uint64_t word, unsigned depth, uint64_t key) {
+    uint64_t root = UINT64_C(1) << depth | word >> 1 >> (63 - depth), result = 0;
+    uint64_t flips = sf_mix64(key ^ root * UINT64_C(0xd1342543de82ef95));
+    /* Within the subtree the node of level l is a one and the l bits that lead to it. */
+    uint64_t path = 64 | (word >> (58 - depth) & 63);
+    for (unsigned level = 0; level < SF_NESTED_LEVELS; ++level) {
+        uint64_t node = path >> (SF_NESTED_LEVELS - level);
+        result |= (flips >> node & 1) << (SF_NESTED_LEVELS - 1 - level);
     }
-    return result;
+    return result << (58 - depth);
 }
 
 #endif

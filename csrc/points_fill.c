@@ -42,10 +42,6 @@ static void make_numbers(sf_points_cursor *cursor, uint64_t first, size_t rows, 
                          void *out) {
     const sf_point_set *set = cursor->set;
     size_t count = rows * set->options.dims;
-    if (set->net && !set->net->nested) {
-        sf_net_rows(cursor, first, rows, type, out);
-        return;
-    }
     uint32_t *high = type == SF_NUMBER_U32 ? out : words, *low = words + chunk_words(&set->options);
     (set->padded ? sf_pad_make : set->method->make)(cursor, first, rows, high, type == SF_NUMBER_F64 ? low : NULL);
     if (type == SF_NUMBER_F32) cursor->kernels->f32(count, high, out);
@@ -59,6 +55,11 @@ static void *fill_share(void *argument) {
     uint32_t *words = job->scratch + state_words(o), *numbers = words + 2 * chunk_words(o);
     sf_points_cursor cursor = {job->set, sf_points_kernels_at(job->isa), job->scratch, UINT64_MAX,
                                sf_net_kernels_at(job->isa)};
+    if (job->set->net && !job->set->net->nested) {
+        sf_net_rows(&cursor, job->first, job->rows, job->type, job->streams, job->out);
+        if (job->streams) sf_stream_end();
+        return NULL;
+    }
     /* The first chunk ends where an aligned block does. */
     size_t rows = step - (size_t)(job->first % step);
     for (size_t row = 0; row < job->rows; row += rows, rows = step) {

@@ -63,41 +63,45 @@ static uint32_t start_word(const uint32_t bytes[4][256], uint32_t index) {
     return bytes[1][index >> 8 & 255] ^ bytes[2][index >> 16 & 255] ^ bytes[3][index >> 24];
 }
 
-/* One set's columns of `rows` points that lie in one aligned block of 256. */
-static void owen_set(sf_points_cursor *cursor, uint32_t set, uint32_t first, size_t rows, uint32_t *out) {
-    const sf_pad_tables *t = cursor->set->padded;
-    uint32_t dims = cursor->set->options.dims, begin = set * t->pad, indices[256];
-    if (set == 0)
-        for (size_t i = 0; i < rows; ++i) indices[i] = first + (uint32_t)i;
-    else
-        cursor->net_kernels->shuffle(first, rows, (uint32_t)(sf_padded_key(cursor->set->options.seed, set) >> 32), indices);
-    for (uint32_t d = begin; d < dims && d < begin + t->pad; ++d) {
-        const uint32_t (*bytes)[256] = t->bytes[d - begin];
-        cursor->net_kernels->look_up(rows, indices, bytes[0], start_word(bytes, indices[0]), t->keys[d], dims, out + d);
+enum { RUN = 256 }; /* points of an aligned block that share all but the least byte of their index */
+
+/* The indices that a set has for points first .. first + rows - 1. */
+static void set_indices(sf_points_cursor *cursor, uint32_t set, uint32_t first, size_t rows, uint32_t *indices) {
+    uint64_t key = sf_padded_key(cursor->set->options.seed, set);
+    if (set && cursor->set->padded->keys) {
+        cursor->net_kernels->shuffle(first, rows, (uint32_t)(key >> 32), indices);
+        return;
     }
+    for (size_t i = 0; i < rows; ++i) indices[i] = first + (uint32_t)i;
+    if (set) cursor->net_kernels->nested(rows, &key, 1, indices, NULL);
 }
 
-static void nested_set(sf_points_cursor *cursor, uint32_t set, uint32_t first, size_t rows, uint32_t *out) {
+/* One set's columns of `rows` points of one run: words, scrambled where that is done by `keys`. */
+static void make_set(sf_points_cursor *cursor, uint32_t set, uint32_t first, size_t rows, uint32_t *out) {
     const sf_pad_tables *t = cursor->set->padded;
-    uint32_t dims = cursor->set->options.dims, begin = set * t->pad, indices[256];
-    uint64_t key = sf_padded_key(cursor->set->options.seed, set);
-    for (size_t i = 0; i < rows; ++i) indices[i] = first + (uint32_t)i;
-    for (size_t i = 0; set && i < rows; ++i) cursor->net_kernels->nested(1, &key, 1, indices + i, NULL);
-    for (uint32_t d = begin; d < dims && d < begin + t->pad; ++d) {
-        const uint32_t (*bytes)[256] = t->bytes[d - begin];
+    uint32_t dims = cursor->set->options.dims, begin = set * t->pad, indices[RUN], words[4][RUN];
+    uint32_t columns = dims - begin < t->pad ? dims - begin : t->pad;
+    set_indices(cursor, set, first, rows, indices);
+    for (uint32_t d = 0; d < columns; ++d) {
+        const uint32_t(*bytes)[256] = t->bytes[d];
         uint32_t start = start_word(bytes, indices[0]);
-        for (size_t i = 0; i < rows; ++i) out[i * dims + d] = bytes[0][indices[i] & 255] ^ start;
+        if (t->keys)
+            cursor->net_kernels->look_up(rows, indices, bytes[0], start, t->keys[begin + d], words[d]);
+        else
+            for (size_t i = 0; i < rows; ++i) words[d][i] = bytes[0][indices[i] & 255] ^ start;
     }
+    for (size_t i = 0; i < rows; ++i)
+        for (uint32_t d = 0; d < columns; ++d) out[i * dims + begin + d] = words[d][i];
 }
 
 void sf_pad_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low) {
     const sf_pad_tables *t = cursor->set->padded;
     uint32_t dims = cursor->set->options.dims, sets = (dims - 1) / t->pad + 1;
     for (size_t row = 0, some; row < rows; row += some) {
-        some = 256 - (size_t)((first + row) & 255);
+        some = RUN - (size_t)((first + row) % RUN);
         if (some > rows - row) some = rows - row;
         for (uint32_t set = 0; set < sets; ++set)
-            (t->keys ? owen_set : nested_set)(cursor, set, (uint32_t)(first + row), some, high + row * dims);
+            make_set(cursor, set, (uint32_t)(first + row), some, high + row * dims);
     }
     if (t->nested)
         cursor->net_kernels->nested(rows * dims, t->nested, dims, high, low);

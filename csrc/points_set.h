@@ -60,7 +60,7 @@ void sf_point_set_release(sf_point_set *set);
 /* net.c: sobol and sz. `rows` writes numbers of a type, `make` words with nested scrambling. */
 sf_status sf_net_prepare(sf_point_set *set, sf_error *error);
 void sf_net_release(sf_net_tables *tables);
-void sf_net_rows(sf_points_cursor *cursor, uint64_t first, size_t rows, sf_number_type type, void *out);
+void sf_net_rows(sf_points_cursor *cursor, uint64_t first, size_t rows, sf_number_type type, int streams, void *out);
 void sf_net_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
 
 /* sz.c: applies the matrix of a dimension to words whose bit k is digit k. The matrix of d is that

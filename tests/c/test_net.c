@@ -3,6 +3,7 @@
 
 /* Sobol' and SZ: matrices, elementary intervals, scrambles, padding, and one result for every way
  * to compute it. The scrambles' laws are in test_scramble.c. */
+#include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include <cmocka.h>
 
@@ -343,6 +345,41 @@ static void test_levels_threads_and_crews_change_no_bit(void **state) {
     sf_crew_destroy(crew);
 }
 
+typedef struct sharer {
+    sf_crew *crew;
+    uint64_t expected;
+    int wrong;
+} sharer;
+
+/* Fills again and again on two threads of the crew, now at once and now after it fell asleep. */
+static void *share_crew(void *argument) {
+    sharer *s = argument;
+    sf_points_options o = options_for(SF_PATTERN_SOBOL, SF_SCRAMBLE_OWEN, 16, 4);
+    static const struct timespec nap = {0, 200000};
+    o.crew = s->crew;
+    o.threads = 3;
+    for (int i = 0; i < 60; ++i) {
+        s->wrong += fill_digest(&o, 4096, 0) != s->expected;
+        if (i % 4 == 0) nanosleep(&nap, NULL);
+    }
+    return NULL;
+}
+
+static void test_a_crew_may_be_shared(void **state) {
+    (void)state;
+    sf_points_options o = options_for(SF_PATTERN_SOBOL, SF_SCRAMBLE_OWEN, 16, 4);
+    sharer s[2] = {{NULL, fill_digest(&o, 4096, 0), 0}};
+    assert_int_equal(sf_crew_create(&s[0].crew, NULL), SF_STATUS_OK);
+    s[1] = s[0];
+    pthread_t other;
+    assert_int_equal(pthread_create(&other, NULL, share_crew, s + 1), 0);
+    share_crew(s);
+    pthread_join(other, NULL);
+    assert_int_equal(s[0].wrong + s[1].wrong, 0);
+    sf_crew_destroy(s[0].crew);
+    sf_crew_destroy(NULL);
+}
+
 static void test_an_array_written_past_the_caches_has_the_same_bits(void **state) {
     (void)state;
     enum { COUNT = (9 << 20) + 3, PART = 99991 };
@@ -422,6 +459,7 @@ int main(void) {
         cmocka_unit_test(test_padded_fills_are_the_stateless_samples),
         cmocka_unit_test(test_the_first_padded_set_is_the_net),
         cmocka_unit_test(test_levels_threads_and_crews_change_no_bit),
+        cmocka_unit_test(test_a_crew_may_be_shared),
         cmocka_unit_test(test_an_array_written_past_the_caches_has_the_same_bits),
         cmocka_unit_test(test_a_set_fills_any_part),
         cmocka_unit_test(test_bad_options_are_named),
