@@ -55,6 +55,7 @@ lint: packages-test .venv/.lint
 bench: packages-bench .venv/.demo build/reference/penumbra_256.npy build/reference/cornell_256.npy
 	$(with_mitsuba) bench/render.py
 	$(venv) bench/startup.py
+	$(venv) bench/sampling.py
 
 clean:
 	rm -rf build out dist .venv .pytest_cache .mypy_cache .ruff_cache

@@ -29,11 +29,14 @@ import sunfleck as sf
 Work = Callable[[], Any]
 
 
-def take_turns(works: list[Work], runs: int) -> list[list[float]]:
-    """Seconds of each work in each run, after one run that counts for nothing."""
+def take_turns(works: list[Work], runs: int, warm: int = 0) -> list[list[float]]:
+    """Seconds of each work in each run, after one run that counts for nothing; `warm` further calls
+    before each that is timed, so that it finds the caches as it leaves them."""
     seconds: list[list[float]] = [[] for _ in works]
     for run in range(-1, runs):
         for work, list_ in zip(works, seconds, strict=True):
+            for _ in range(warm):
+                work()
             start = time.perf_counter()
             work()
             if run >= 0:
@@ -112,7 +115,8 @@ def bench_scipy() -> None:
 
 
 def bench_threads() -> None:
-    """One thread and two, from arrays that fit a first cache to those beyond every cache."""
+    """One thread and two, from arrays that fit a first cache to those beyond every cache, each again
+    and again: the parts stay in the cache of the core that wrote them, where they fit."""
     d = 16
     print(f"{'float32':>10}  {'plain: 1, 2 threads, gain':>30}  {'owen: 1, 2 threads, gain':>30}")
     for exponent in (10, 12, 13, 14, 15, 16, 17, 18, 20, 22):
@@ -121,7 +125,7 @@ def bench_threads() -> None:
         cells = []
         for scramble in (None, "owen"):
             works = [filler("sobol", n, d, out, scramble=scramble, threads=t) for t in (1, 2)]
-            one, two = take_turns(works, 9 if exponent > 17 else 101)
+            one, two = take_turns(works, 9 if exponent > 17 else 101, warm=1 if exponent > 17 else 3)
             micro = (1e6 * median(seconds) for seconds in (one, two))
             cells.append(f"{' '.join(f'{m:9.1f}' for m in micro)} us {ratio(one, two):5.2f} x")
         print(f"{n * d * 4 / 2**20:6.2f} MiB  " + "  ".join(cells))

@@ -84,25 +84,28 @@ float sf_sz_sample_with(uint32_t index, uint32_t dimension, uint64_t seed, sf_sc
 
 enum { BLOCK_WORDS = 2048, PERIOD_WORDS = 512, COLUMN_GROUP = 16 };
 
-/* What 256 dimensions of sz have in common: the greater factors of their matrices. */
-typedef struct sz_factor {
-    uint32_t digits[32];
-    uint32_t above; /* dimension / 256 */
-} sz_factor;
+/* What 256 dimensions of sz have in common, the greater factors of their matrices, and what 16. */
+typedef struct sz_factors {
+    uint32_t of_256[32], of_16[32];
+} sz_factors;
 
-static void make_sz_matrix(sz_factor *common, uint32_t dimension, uint32_t columns[32]) {
-    if (dimension == 0 || common->above != dimension >> 8) {
-        common->above = dimension >> 8;
-        for (unsigned k = 0; k < 32; ++k) common->digits[k] = UINT32_C(1) << k;
-        sf_sz_transform(dimension & ~UINT32_C(255), common->digits, 32);
+/* Dimensions are asked for in their order. */
+static void make_sz_matrix(sz_factors *common, uint32_t dimension, uint32_t columns[32]) {
+    if (dimension % 256 == 0) {
+        for (unsigned k = 0; k < 32; ++k) common->of_256[k] = UINT32_C(1) << k;
+        sf_sz_transform(dimension, common->of_256, 32);
     }
-    memcpy(columns, common->digits, sizeof common->digits);
-    sf_sz_transform(dimension & 255, columns, 32);
+    if (dimension % 16 == 0) {
+        memcpy(common->of_16, common->of_256, sizeof common->of_16);
+        sf_sz_transform(dimension & 0xf0, common->of_16, 32);
+    }
+    memcpy(columns, common->of_16, sizeof common->of_16);
+    sf_sz_transform(dimension & 15, columns, 32);
     for (unsigned k = 0; k < 32; ++k) columns[k] = sf_reverse_bits32(columns[k]);
 }
 
 /* The columns of a dimension as 64-bit words, scrambled where a matrix scramble is asked for. */
-static void make_columns(const sf_points_options *o, uint32_t dimension, sz_factor *common, uint64_t columns[32]) {
+static void make_columns(const sf_points_options *o, uint32_t dimension, sz_factors *common, uint64_t columns[32]) {
     uint32_t plain[32];
     if (o->pattern == SF_PATTERN_SZ)
         make_sz_matrix(common, dimension, plain);
@@ -124,7 +127,7 @@ static void make_columns(const sf_points_options *o, uint32_t dimension, sz_fact
 
 /* Sums of the columns, a group of dimensions at a time, so that each row gets a whole line. */
 static void fill_columns(sf_net_tables *t, const sf_points_options *o) {
-    sz_factor common;
+    sz_factors common;
     for (uint32_t begin = 0; begin < t->dims; begin += COLUMN_GROUP) {
         uint64_t group[COLUMN_GROUP][32], sums[COLUMN_GROUP] = {0};
         uint32_t count = t->dims - begin < COLUMN_GROUP ? t->dims - begin : COLUMN_GROUP;
@@ -165,7 +168,7 @@ static void fill_steps(sf_net_tables *t, int part) {
             step[d] = upto[d];
             if (t->block_bits) step[d] ^= t->columns[part][(size_t)(t->block_bits - 1) * t->dims + d];
         }
-        for (uint32_t i = t->dims; i < t->period; ++i) step[i] = step[i - t->dims];
+        sf_repeat_row(step, t->dims, t->period);
     }
 }
 
@@ -234,11 +237,10 @@ static void fill_keys(sf_net_tables *t, uint64_t seed) {
         uint64_t key = sf_hash64(seed, d);
         if (t->shift[0]) t->shift[0][d] = (uint32_t)(key >> 32);
         if (t->shift[1]) t->shift[1][d] = (uint32_t)key;
-        for (uint32_t i = d; i < t->period; i += t->dims) {
-            if (t->keys) t->keys[i] = (uint32_t)(key >> 32);
-            if (t->nested) t->nested[i] = key;
-        }
+        if (t->keys) t->keys[d] = (uint32_t)(key >> 32);
+        for (uint32_t i = d; t->nested && i < t->period; i += t->dims) t->nested[i] = key;
     }
+    if (t->keys) sf_repeat_row(t->keys, t->dims, t->period);
 }
 
 sf_status sf_net_prepare(sf_point_set *set, sf_error *error) {

@@ -139,7 +139,7 @@ static void start_part(const sf_net_tables *t, int part, uint64_t index, uint32_
         for (unsigned k = 0; t->columns[part] && k < t->index_bits; ++k)
             if (changes >> k & 1) xor_row(state + begin, t->columns[part] + (size_t)k * t->dims + begin, count);
     }
-    for (uint32_t i = t->dims; i < t->period; ++i) state[i] = state[i - t->dims];
+    sf_repeat_row(state, t->dims, t->period);
 }
 
 static void start(const sf_net_tables *t, uint64_t index, uint32_t *state) {

@@ -5,6 +5,8 @@
 #ifndef SUNFLECK_NET_KERNELS_H
 #define SUNFLECK_NET_KERNELS_H
 
+#include <string.h>
+
 #include "level.h"
 #include "points_kernels.h"
 #include "sunfleck/points.h"
@@ -49,6 +51,11 @@ typedef struct sf_net_kernels {
 } sf_net_kernels;
 
 SF_KERNELS(sf_net_kernels)
+
+/* Repeats the first `dims` words up to `period`, dims times a power of two. */
+static inline void sf_repeat_row(uint32_t *row, uint32_t dims, uint32_t period) {
+    for (uint32_t filled = dims; filled < period; filled *= 2) memcpy(row + filled, row, filled * sizeof *row);
+}
 
 /* What continues an Owen-scrambled word below its 32 bits. Distinct indices have distinct words,
  * so that Owen's flips beyond depth 32 are independent uniform bits: any hash of the word. */

@@ -382,7 +382,7 @@ static void test_a_crew_may_be_shared(void **state) {
 
 static void test_an_array_written_past_the_caches_has_the_same_bits(void **state) {
     (void)state;
-    enum { COUNT = (9 << 20) + 3, PART = 99991 };
+    enum { COUNT = (4 << 20) + 3, PART = 99991 };
     uint32_t *whole = malloc((COUNT + 1) * sizeof *whole), *part = malloc(PART * sizeof *part);
     sf_points_options o = options_for(SF_PATTERN_SOBOL, SF_SCRAMBLE_OWEN, 1, 1);
     assert_int_equal(sf_points_fill_u32(&o, COUNT, whole + 1, NULL), SF_STATUS_OK);
