@@ -3,7 +3,8 @@
 
 /* A crew: threads that outlive the work they are given. Waking a thread that sleeps takes as long as
  * filling a first cache some ten times, and starting one longer still; so whoever waits looks for
- * a while before it sleeps. */
+ * a while before it sleeps. A share that its thread has not begun when the caller has done its
+ * own is the caller's too: on a busy machine a crew costs little more than no threads at all. */
 #include "crew.h"
 
 #include "error.h"
@@ -11,11 +12,11 @@
 
 #define LOOK_SECONDS 50e-6 /* about the time to sleep and wake twice */
 
+/* A ticket is even where a share waits for its member, odd where someone has taken it. */
 typedef struct member {
     sf_crew *crew;
     unsigned number;
-    size_t begun;        /* turns that it has taken */
-    sf_atomic_size turn; /* counts up as one begins */
+    sf_atomic_size ticket;
     int asleep;
     pthread_cond_t start;
     pthread_t thread;
@@ -25,7 +26,7 @@ struct sf_crew {
     pthread_mutex_t busy;  /* held while someone's work runs */
     pthread_mutex_t mutex; /* of who is asleep */
     pthread_cond_t finish;
-    sf_atomic_size working; /* members that have not finished the turn */
+    sf_atomic_size working; /* shares of members that are not done */
     unsigned count;
     int caller_sleeps, ending;
     sf_crew_work_fn work;
@@ -33,43 +34,49 @@ struct sf_crew {
     member *members[SF_CREW_MAX];
 };
 
-/* Looks until the counter differs from (or, with `until`, is) `value`; 0 when time is up. */
-static int look(const sf_atomic_size *counter, size_t value, int until) {
+static int waits(const member *m) { return sf_atomic_load(&m->ticket) % 2 == 0; }
+
+static int take(member *m) {
+    size_t ticket = sf_atomic_load(&m->ticket);
+    return ticket % 2 == 0 && sf_atomic_replace(&m->ticket, ticket, ticket + 1);
+}
+
+/* One look; starts the clock at the first, and says 0 when time is up. */
+static int look_on(unsigned *looks, double *end) {
+    sf_pause();
+    if (++*looks % 64) return 1;
+    double now = sf_seconds_now();
+    if (*looks == 64) *end = now + LOOK_SECONDS;
+    return now < *end;
+}
+
+static void wait_for_ticket(member *self) {
+    unsigned looks = 0;
     double end = 0;
-    for (unsigned i = 0;; ++i) {
-        if ((sf_atomic_load(counter) == value) == until) return 1;
-        sf_pause();
-        if (i % 64) continue;
-        double now = sf_seconds_now();
-        if (end == 0) end = now + LOOK_SECONDS;
-        if (now > end) return 0;
-    }
+    while (!waits(self))
+        if (!look_on(&looks, &end)) break;
+    if (waits(self)) return;
+    pthread_mutex_lock(&self->crew->mutex);
+    self->asleep = 1;
+    while (!waits(self)) pthread_cond_wait(&self->start, &self->crew->mutex);
+    self->asleep = 0;
+    pthread_mutex_unlock(&self->crew->mutex);
 }
 
-static int wait_for_turn(member *self) {
-    sf_crew *crew = self->crew;
-    if (!look(&self->turn, self->begun, 0)) {
-        pthread_mutex_lock(&crew->mutex);
-        self->asleep = 1;
-        while (sf_atomic_load(&self->turn) == self->begun) pthread_cond_wait(&self->start, &crew->mutex);
-        self->asleep = 0;
-        pthread_mutex_unlock(&crew->mutex);
-    }
-    ++self->begun;
-    return !crew->ending;
-}
-
+/* While a share is taken and not done the caller does not return, and work and user stay. */
 static void *serve(void *argument) {
     member *self = argument;
     sf_crew *crew = self->crew;
-    while (wait_for_turn(self)) {
+    for (;;) {
+        wait_for_ticket(self);
+        if (!take(self)) continue;
+        if (crew->ending) return NULL;
         crew->work(crew->user, self->number);
         if (sf_atomic_subtract(&crew->working, 1) != 1) continue;
         pthread_mutex_lock(&crew->mutex);
         if (crew->caller_sleeps) pthread_cond_signal(&crew->finish);
         pthread_mutex_unlock(&crew->mutex);
     }
-    return NULL;
 }
 
 static int join_member(sf_crew *crew) {
@@ -77,6 +84,7 @@ static int join_member(sf_crew *crew) {
     if (!fresh) return 0;
     fresh->crew = crew;
     fresh->number = crew->count;
+    sf_atomic_store(&fresh->ticket, 1);
     pthread_cond_init(&fresh->start, NULL);
     if (pthread_create(&fresh->thread, NULL, serve, fresh) != 0) {
         pthread_cond_destroy(&fresh->start);
@@ -87,19 +95,23 @@ static int join_member(sf_crew *crew) {
     return 1;
 }
 
-static void begin_turn(sf_crew *crew, unsigned count) {
+static void give_tickets(sf_crew *crew, unsigned count) {
     sf_atomic_store(&crew->working, count);
     for (unsigned i = 0; i < count; ++i) {
         member *m = crew->members[i];
+        sf_atomic_store(&m->ticket, sf_atomic_load(&m->ticket) + 1);
         pthread_mutex_lock(&crew->mutex);
-        sf_atomic_store(&m->turn, m->turn.value + 1);
         if (m->asleep) pthread_cond_signal(&m->start);
         pthread_mutex_unlock(&crew->mutex);
     }
 }
 
 static void wait_for_all(sf_crew *crew) {
-    if (look(&crew->working, 0, 1)) return;
+    unsigned looks = 0;
+    double end = 0;
+    while (sf_atomic_load(&crew->working))
+        if (!look_on(&looks, &end)) break;
+    if (!sf_atomic_load(&crew->working)) return;
     pthread_mutex_lock(&crew->mutex);
     crew->caller_sleeps = 1;
     while (sf_atomic_load(&crew->working)) pthread_cond_wait(&crew->finish, &crew->mutex);
@@ -114,8 +126,12 @@ int sf_crew_run(sf_crew *crew, unsigned shares, sf_crew_work_fn work, void *user
     if (helped > crew->count) helped = crew->count;
     crew->work = work;
     crew->user = user;
-    begin_turn(crew, helped);
-    for (unsigned share = helped; share < shares; ++share) work(user, share);
+    give_tickets(crew, helped);
+    for (unsigned share = shares; share-- > 0;) {
+        if (share < helped && !take(crew->members[share])) continue;
+        work(user, share);
+        if (share < helped) sf_atomic_subtract(&crew->working, 1);
+    }
     wait_for_all(crew);
     pthread_mutex_unlock(&crew->busy);
     return 1;
@@ -133,7 +149,7 @@ sf_status sf_crew_create(sf_crew **out, sf_error *error) {
 void sf_crew_destroy(sf_crew *crew) {
     if (!crew) return;
     crew->ending = 1;
-    begin_turn(crew, crew->count);
+    give_tickets(crew, crew->count);
     for (unsigned i = 0; i < crew->count; ++i) {
         pthread_join(crew->members[i]->thread, NULL);
         pthread_cond_destroy(&crew->members[i]->start);

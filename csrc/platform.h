@@ -110,6 +110,12 @@ static inline size_t sf_atomic_subtract(sf_atomic_size *a, size_t step) {
     return __atomic_fetch_sub(&a->value, step, __ATOMIC_ACQ_REL);
 }
 
+/* Sets it to `to` if it is `from`: 1, or 0 where it is something else. Work done before is seen by
+ * who reads `to`, and the other way. */
+static inline int sf_atomic_replace(sf_atomic_size *a, size_t from, size_t to) {
+    return __atomic_compare_exchange_n(&a->value, &from, to, 0, __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE);
+}
+
 /* Tells the processor that this is a loop which waits. */
 static inline void sf_pause(void) {
 #if defined(__x86_64__)

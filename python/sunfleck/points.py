@@ -88,8 +88,9 @@ def points(
 
     Notes
     -----
-    Releases the GIL while it fills. One core fills some 2,000 million float32 a second with
-    "owen" scrambling, as fast as memory takes them without, and 200 million with "nested".
+    Releases the GIL while it fills. One core of today makes some 2,500 million float32 of sobol a
+    second with "owen" scrambling, 110 million with "nested", and as many as memory takes with the
+    others; arrays from 12 MiB on are written past the caches. Threads stay between calls.
 
     References
     ----------
@@ -105,6 +106,8 @@ def points(
     >>> import sunfleck as sf
     >>> sf.points("sobol", 4, scramble=None).tolist()
     [[0.0, 0.0], [0.5, 0.5], [0.25, 0.75], [0.75, 0.25]]
+    >>> sf.points("sobol", 256, 100, scramble="owen", pad=2).shape  # fifty pairs side by side
+    (256, 100)
     """
     n, start = integer("n", n), integer("start", start)
     d = integer("d", d, bits=32)

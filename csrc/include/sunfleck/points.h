@@ -49,7 +49,8 @@ typedef enum sf_scramble {
                                 (Matousek 1998) */
     SF_SCRAMBLE_OWEN,        /* sobol, sz: nested uniform scrambling by a hash (Burley 2020, with
                                 Vegdahl's 2021 constants) */
-    SF_SCRAMBLE_NESTED,      /* sobol, sz: nested uniform scrambling (Owen 1995), 64-bit keys */
+    SF_SCRAMBLE_NESTED,      /* sobol, sz: the same by the letter (Owen 1995), a flip of its own at each
+                                node of the tree, by a hash of 64 bits: some twenty times the cost */
     SF_SCRAMBLE_COUNT
 } sf_scramble;
 
@@ -124,8 +125,8 @@ sf_status sf_points_fill_f64(const sf_points_options *options, size_t count, dou
 sf_status sf_points_fill_u32(const sf_points_options *options, size_t count, uint32_t *out, sf_error *error);
 
 /* A pattern with its tables made, for those who ask for a few points at a time: sf_points_fill_…
- * makes them anew each call, 10 ms for 21,201 dimensions of Sobol. `first` of the options is
- * not used. Immutable once made, so that threads may share it. */
+ * makes them anew each call, 6 ms for 21,201 dimensions of Sobol, of which a point then takes
+ * 0.04 ms. `first` of the options is not used. Immutable once made, so that threads may share it. */
 typedef struct sf_point_set sf_point_set;
 
 sf_status sf_point_set_create(const sf_points_options *options, sf_point_set **set, sf_error *error);
