@@ -41,7 +41,7 @@ static const sf_pattern_method methods[SF_PATTERN_COUNT] = {
 static const struct {
     const char *name, *description;
 } scrambles[SF_SCRAMBLE_COUNT] = {
-    [SF_SCRAMBLE_DEFAULT] = {"default", "the pattern's own: owen for sobol and sz, permuted for halton, none elsewhere"},
+    [SF_SCRAMBLE_DEFAULT] = {"default", "the pattern's own: owen for sobol, sz, permuted for halton, none elsewhere"},
     [SF_SCRAMBLE_NONE] = {"none", "the plain pattern"},
     [SF_SCRAMBLE_PERMUTED] = {"permuted", "each digit by a random permutation of its place"},
     [SF_SCRAMBLE_SHIFT] = {"shift", "one random word a dimension, XORed into every point's (digital shift)"},

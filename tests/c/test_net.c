@@ -164,7 +164,8 @@ static int t_value(const float *u, uint32_t dims, uint32_t a, uint32_t b, int k)
 enum { PAIR_DIMS = 6, LOG_POINTS = 10, BLOCKS = 3 };
 
 /* t of every pair at every block length, the greatest over the aligned blocks looked at. */
-static void t_values(sf_pattern pattern, sf_scramble scramble, uint64_t seed, int t[PAIR_DIMS][PAIR_DIMS][LOG_POINTS + 1]) {
+static void t_values(sf_pattern pattern, sf_scramble scramble, uint64_t seed,
+                     int t[PAIR_DIMS][PAIR_DIMS][LOG_POINTS + 1]) {
     static float u[(BLOCKS << LOG_POINTS) * PAIR_DIMS];
     sf_points_options o = options_for(pattern, scramble, PAIR_DIMS, seed);
     assert_int_equal(sf_points_fill_f32(&o, BLOCKS << LOG_POINTS, u, NULL), SF_STATUS_OK);
@@ -214,7 +215,8 @@ static void test_padded_sets_keep_their_intervals_and_differ(void **state) {
         assert_int_equal(sf_points_fill_f32(&o, 4 << K, &u[0][0], NULL), SF_STATUS_OK);
         for (uint32_t d = 0; d < DIMS; d += 2)
             for (int k = 1; k <= K; ++k)
-                for (size_t block = 0; block < 4; ++block) assert_int_equal(t_value(u[block << k], DIMS, d, d + 1, k), 0);
+                for (size_t block = 0; block < 4; ++block)
+                    assert_int_equal(t_value(u[block << k], DIMS, d, d + 1, k), 0);
         /* Sets in step would have dimension d + 2 in the order of d, up to the scramble's flips: the
          * halves of both would then agree or disagree at every point. */
         for (uint32_t d = 0; d + 2 < DIMS; ++d) {

@@ -49,8 +49,7 @@ typedef enum sf_scramble {
                                 (Matousek 1998) */
     SF_SCRAMBLE_OWEN,        /* sobol, sz: nested uniform scrambling by a hash (Burley 2020, with
                                 Vegdahl's 2021 constants) */
-    SF_SCRAMBLE_NESTED,      /* sobol, sz: the same by the letter (Owen 1995), a flip of its own at each
-                                node of the tree, by a hash of 64 bits: some twenty times the cost */
+    SF_SCRAMBLE_NESTED,      /* sobol, sz: nested uniform scrambling (Owen 1995), 64-bit keys */
     SF_SCRAMBLE_COUNT
 } sf_scramble;
 
