@@ -73,10 +73,10 @@ static void *fill_share(void *argument) {
 }
 
 /* Threads pay from some 2^16 words each, as starting one takes as long as making them; a crew's,
- * which need not be started, from 2^13. */
+ * which need not be started, from 2^15. */
 static unsigned useful_threads(const sf_points_options *options, size_t count) {
     enum { MAX_THREADS = SF_CREW_MAX + 1 };
-    size_t least_words = (size_t)1 << (options->crew ? 13 : 16);
+    size_t least_words = (size_t)1 << (options->crew ? 15 : 16);
     unsigned threads = options->threads ? options->threads : sf_processor_count();
     size_t most = count / (least_words / options->dims + 1);
     if (threads > MAX_THREADS) threads = MAX_THREADS;

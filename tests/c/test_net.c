@@ -163,7 +163,7 @@ static int t_value(const float *u, uint32_t dims, uint32_t a, uint32_t b, int k)
 
 enum { PAIR_DIMS = 6, LOG_POINTS = 10, BLOCKS = 3 };
 
-/* t of every pair at every block length, the greatest over the aligned blocks looked at. */
+/* t of every pair at every block length, the greatest over all aligned blocks. */
 static void t_values(sf_pattern pattern, sf_scramble scramble, uint64_t seed,
                      int t[PAIR_DIMS][PAIR_DIMS][LOG_POINTS + 1]) {
     static float u[(BLOCKS << LOG_POINTS) * PAIR_DIMS];
@@ -172,9 +172,9 @@ static void t_values(sf_pattern pattern, sf_scramble scramble, uint64_t seed,
     for (uint32_t a = 0; a < PAIR_DIMS; ++a)
         for (uint32_t b = a + 1; b < PAIR_DIMS; ++b)
             for (int k = 1; k <= LOG_POINTS; ++k) {
-                size_t blocks = (size_t)BLOCKS << (LOG_POINTS - k), step = blocks > 8 ? blocks / 8 : 1;
+                size_t blocks = (size_t)BLOCKS << (LOG_POINTS - k);
                 t[a][b][k] = 0;
-                for (size_t block = 0; block < blocks; block += step) {
+                for (size_t block = 0; block < blocks; ++block) {
                     int found = t_value(u + (block << k) * PAIR_DIMS, PAIR_DIMS, a, b, k);
                     if (found > t[a][b][k]) t[a][b][k] = found;
                 }
