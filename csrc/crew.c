@@ -41,10 +41,12 @@ static int take(member *m) {
     return ticket % 2 == 0 && sf_atomic_replace(&m->ticket, ticket, ticket + 1);
 }
 
-/* One look; starts the clock at the first, and says 0 when time is up. */
+/* One look; starts the clock at the first, and says 0 when time is up. Now and then the processor is
+ * offered to others: on a busy machine the one waited for may need this very one. */
 static int look_on(unsigned *looks, double *end) {
     sf_pause();
     if (++*looks % 64) return 1;
+    sf_yield();
     double now = sf_seconds_now();
     if (*looks == 64) *end = now + LOOK_SECONDS;
     return now < *end;

@@ -7,6 +7,7 @@
 #define SUNFLECK_PLATFORM_H
 
 #include <pthread.h>
+#include <sched.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -122,6 +123,9 @@ static inline void sf_pause(void) {
     _mm_pause();
 #endif
 }
+
+/* Lets another thread have the processor, if one waits for it. */
+static inline void sf_yield(void) { (void)sched_yield(); }
 
 /* How many bits of x are 1. */
 static inline unsigned sf_count_bits(uint32_t x) { return (unsigned)__builtin_popcount(x); }
