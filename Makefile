@@ -56,6 +56,7 @@ lint: packages-test .venv/.lint
 bench: packages-bench .venv/.demo build/reference/penumbra_256.npy build/reference/cornell_256.npy
 	$(with_mitsuba) bench/render.py
 	$(venv) bench/startup.py
+	$(venv) bench/sampling.py
 	$(venv) bench/generators.py
 
 # Some 15 minutes of two processors; build/battery/ keeps what was run.

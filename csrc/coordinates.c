@@ -55,9 +55,14 @@ static sf_status choose_cells(sf_coordinates *coordinates, uint32_t spp, sf_erro
     return sf_grid_sides(coordinates->cells, 2, coordinates->sides, error);
 }
 
+static bool can_render(sf_pattern pattern) {
+    return pattern == SF_PATTERN_UNIFORM || pattern == SF_PATTERN_RANDOM || pattern == SF_PATTERN_JITTERED ||
+           pattern == SF_PATTERN_HALTON || pattern == SF_PATTERN_SOBOL;
+}
+
 sf_status sf_coordinates_init(sf_coordinates *coordinates, sf_pattern pattern, const sf_plan *plan, uint32_t spp,
                               uint64_t seed, sf_error *error) {
-    if ((unsigned)pattern > SF_PATTERN_SOBOL)
+    if (!can_render(pattern))
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
                        "pattern %s can't be rendered with; choose uniform, random, jittered, halton or sobol",
                        sf_pattern_name(pattern) ? sf_pattern_name(pattern) : "?");

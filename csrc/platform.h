@@ -7,6 +7,7 @@
 #define SUNFLECK_PLATFORM_H
 
 #include <pthread.h>
+#include <sched.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -65,6 +66,30 @@ static inline void *sf_pages_alloc(size_t bytes) {
 }
 static inline void sf_pages_free(void *memory, size_t bytes) {
     if (memory) munmap(memory, bytes ? bytes : 1);
+}
+
+/* Copies to memory that will not be read soon, past the caches where the processor can: a store of
+ * its own kind then need not fetch the line that it overwrites. After the last of such copies,
+ * sf_stream_end makes them visible to other threads. */
+static inline void sf_stream_copy(void *to, const void *from, size_t bytes) {
+#if defined(__x86_64__)
+    char *out = (char *)to;
+    const char *in = (const char *)from;
+    size_t head = (0 - (uintptr_t)to) % 64; /* whole lines from here on */
+    if (head > bytes) head = bytes;
+    memcpy(out, in, head);
+    for (out += head, in += head, bytes -= head; bytes >= 64; out += 64, in += 64, bytes -= 64)
+        for (int i = 0; i < 4; ++i)
+            _mm_stream_si128((__m128i *)out + i, _mm_loadu_si128((const __m128i *)in + i));
+    memcpy(out, in, bytes);
+#else
+    memcpy(to, from, bytes);
+#endif
+}
+static inline void sf_stream_end(void) {
+#if defined(__x86_64__)
+    _mm_sfence();
+#endif
 }
 
 /* A counter that threads advance together. */
@@ -132,6 +157,26 @@ static inline void sf_lanes64_interleave4(const sf_lanes64 x[4], void *out) {
         sf_lanes64_interleave2(pair, (uint64_t *)out + 2 * part * SF_LANES64);
     }
 }
+/* What it was before; work done by those that subtracted before is seen by who reads the result. */
+static inline size_t sf_atomic_subtract(sf_atomic_size *a, size_t step) {
+    return __atomic_fetch_sub(&a->value, step, __ATOMIC_ACQ_REL);
+}
+
+/* Sets it to `to` if it is `from`: 1, or 0 where it is something else. Work done before is seen by
+ * who reads `to`, and the other way. */
+static inline int sf_atomic_replace(sf_atomic_size *a, size_t from, size_t to) {
+    return __atomic_compare_exchange_n(&a->value, &from, to, 0, __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE);
+}
+
+/* Tells the processor that this is a loop which waits. */
+static inline void sf_pause(void) {
+#if defined(__x86_64__)
+    _mm_pause();
+#endif
+}
+
+/* Lets another thread have the processor, if one waits for it. */
+static inline void sf_yield(void) { (void)sched_yield(); }
 
 /* How many bits of x are 1. */
 static inline unsigned sf_count_bits(uint32_t x) { return (unsigned)__builtin_popcount(x); }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-/* Patterns by name, the checks of their options, and filling by blocks on threads. */
+/* Patterns by name, the checks of their options, and sets. */
 #include "sunfleck/points.h"
 
 #include <inttypes.h>
@@ -15,6 +15,9 @@
 #define TAKES(scramble) (1u << (scramble))
 #define ANY_COUNT UINT64_MAX
 #define COUNT_32 (UINT64_C(1) << 32)
+#define NET_SCRAMBLES                                                                                          \
+    (TAKES(SF_SCRAMBLE_NONE) | TAKES(SF_SCRAMBLE_SHIFT) | TAKES(SF_SCRAMBLE_LMS) | TAKES(SF_SCRAMBLE_OWEN) | \
+     TAKES(SF_SCRAMBLE_NESTED))
 
 static const sf_pattern_method methods[SF_PATTERN_COUNT] = {
     [SF_PATTERN_UNIFORM] = {"uniform", "centres of a regular grid; aliases, and needs its total ahead",
@@ -30,17 +33,21 @@ static const sf_pattern_method methods[SF_PATTERN_COUNT] = {
                            SF_HALTON_MAX_DIMS, ANY_COUNT, 0, SF_SCRAMBLE_PERMUTED,
                            TAKES(SF_SCRAMBLE_NONE) | TAKES(SF_SCRAMBLE_PERMUTED), sf_halton_prepare, sf_halton_make},
     [SF_PATTERN_SOBOL] = {"sobol", "Sobol' sequence with Joe & Kuo's direction numbers, Owen-scrambled (Burley 2020)",
-                          SF_SOBOL_MAX_DIMS, COUNT_32, 0, SF_SCRAMBLE_OWEN,
-                          TAKES(SF_SCRAMBLE_NONE) | TAKES(SF_SCRAMBLE_OWEN), sf_sobol_prepare, sf_sobol_make},
+                          SF_SOBOL_MAX_DIMS, COUNT_32, 0, SF_SCRAMBLE_OWEN, NET_SCRAMBLES, sf_net_prepare, sf_net_make},
+    [SF_PATTERN_SZ] = {"sz", "pairs of dimensions are (0, 2)-sequences in base 2, fours (0, 4) in base 4 (Ahmed 2024)",
+                       SF_SZ_MAX_DIMS, COUNT_32, 0, SF_SCRAMBLE_OWEN, NET_SCRAMBLES, sf_net_prepare, sf_net_make},
 };
 
 static const struct {
     const char *name, *description;
 } scrambles[SF_SCRAMBLE_COUNT] = {
-    [SF_SCRAMBLE_DEFAULT] = {"default", "the pattern's own: owen for sobol, permuted for halton, none elsewhere"},
+    [SF_SCRAMBLE_DEFAULT] = {"default", "the pattern's own: owen for sobol, sz, permuted for halton, none elsewhere"},
     [SF_SCRAMBLE_NONE] = {"none", "the plain pattern"},
     [SF_SCRAMBLE_PERMUTED] = {"permuted", "each digit by a random permutation of its place"},
+    [SF_SCRAMBLE_SHIFT] = {"shift", "one random word a dimension, XORed into every point's (digital shift)"},
+    [SF_SCRAMBLE_LMS] = {"lms", "a random lower triangular matrix a dimension, and a digital shift (Matousek 1998)"},
     [SF_SCRAMBLE_OWEN] = {"owen", "nested uniform scrambling by a hash (Owen 1995, Burley 2020, Vegdahl 2021)"},
+    [SF_SCRAMBLE_NESTED] = {"nested", "nested uniform scrambling with a flip of its own at each node (Owen 1995)"},
 };
 
 /* ---- names ---- */
@@ -101,8 +108,8 @@ int sf_pattern_takes_scramble(sf_pattern pattern, sf_scramble scramble) {
     return scramble == SF_SCRAMBLE_DEFAULT || (methods[pattern].scrambles >> scramble & 1u);
 }
 
-static sf_status check_pattern(sf_pattern pattern, uint32_t dims, sf_error *error) {
-    if ((unsigned)pattern >= SF_PATTERN_COUNT)
+sf_status sf_points_check_pattern(sf_pattern pattern, uint32_t dims, sf_error *error) {
+    if ((unsigned)pattern >= SF_PATTERN_COUNT || !methods[pattern].name)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "pattern is %d; patterns are 0 .. %d", (int)pattern,
                        SF_PATTERN_COUNT - 1);
     if (dims < 1 || dims > methods[pattern].max_dims)
@@ -111,9 +118,17 @@ static sf_status check_pattern(sf_pattern pattern, uint32_t dims, sf_error *erro
     return SF_STATUS_OK;
 }
 
+sf_status sf_points_check_dims(const sf_points_options *options, sf_error *error) {
+    if (options->pad == 0 || options->dims == 0) return sf_points_check_pattern(options->pattern, options->dims, error);
+    if (options->dims > SF_POINTS_MAX_DIMS)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "dims is %" PRIu32 "; padded sets have 1 .. %u dimensions",
+                       options->dims, SF_POINTS_MAX_DIMS);
+    return sf_points_check_pattern(options->pattern, 1, error); /* the set's own few dimensions every net has */
+}
+
 sf_status sf_pattern_valid_counts(sf_pattern pattern, uint32_t dims, uint64_t n, uint64_t *below, uint64_t *above,
                                   sf_error *error) {
-    sf_status status = check_pattern(pattern, dims, error);
+    sf_status status = sf_points_check_pattern(pattern, dims, error);
     if (status != SF_STATUS_OK) return status;
     if (methods[pattern].needs_total) return sf_grid_valid_counts(n, dims, below, above);
     uint64_t most = methods[pattern].max_count;
@@ -146,8 +161,22 @@ static sf_status check_scramble(sf_pattern pattern, sf_scramble scramble, sf_err
                    methods[pattern].name, taken);
 }
 
-/* Whether points first .. first + count - 1 exist. */
-static sf_status check_range(const sf_points_options *options, uint64_t first, uint64_t count, sf_error *error) {
+/* Padded sets need a scramble that gives each set an order and keys of its own. */
+static sf_status check_pad(const sf_points_options *options, sf_error *error) {
+    if (options->pad == 0) return SF_STATUS_OK;
+    if (options->pad != 2 && options->pad != 4)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "pad is %" PRIu32 "; it is 0, 2 or 4", options->pad);
+    const sf_pattern_method *method = &methods[options->pattern];
+    if (options->pattern != SF_PATTERN_SOBOL && options->pattern != SF_PATTERN_SZ)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "pad is %" PRIu32 ", which sobol and sz take, and %s does not",
+                       options->pad, method->name);
+    sf_scramble scramble = options->scramble ? options->scramble : method->default_scramble;
+    if (scramble == SF_SCRAMBLE_OWEN || scramble == SF_SCRAMBLE_NESTED) return SF_STATUS_OK;
+    return sf_fail(error, SF_STATUS_INVALID_VALUE, "pad is %" PRIu32 ", which takes scramble owen or nested, not %s",
+                   options->pad, sf_scramble_name(scramble));
+}
+
+sf_status sf_points_check_range(const sf_points_options *options, uint64_t first, uint64_t count, sf_error *error) {
     const sf_pattern_method *method = &methods[options->pattern];
     uint64_t most = method->max_count;
     if (first > most || count > most - first)
@@ -165,24 +194,25 @@ static sf_status check_range(const sf_points_options *options, uint64_t first, u
 
 /* ---- sets ---- */
 
-/* Frees what a set holds, not the set. */
-static void release(sf_point_set *set) {
+void sf_point_set_release(sf_point_set *set) {
     sf_aligned_free(set->sides);
-    sf_sobol_release(set->sobol);
+    sf_net_release(set->net);
+    sf_pad_release(set->padded);
     sf_halton_release(set->halton, set->options.dims);
 }
 
-static sf_status init(sf_point_set *set, const sf_points_options *options, sf_error *error) {
+sf_status sf_point_set_init(sf_point_set *set, const sf_points_options *options, sf_error *error) {
     memset(set, 0, sizeof *set);
-    sf_status status = check_pattern(options->pattern, options->dims, error);
+    sf_status status = sf_points_check_dims(options, error);
     if (status == SF_STATUS_OK) status = check_scramble(options->pattern, options->scramble, error);
+    if (status == SF_STATUS_OK) status = check_pad(options, error);
     if (status != SF_STATUS_OK) return status;
     set->method = &methods[options->pattern];
     set->options = *options;
     if (options->scramble == SF_SCRAMBLE_DEFAULT) set->options.scramble = set->method->default_scramble;
     if (!set->method->prepare || (set->method->needs_total && !options->total)) return SF_STATUS_OK;
-    status = set->method->prepare(set, error);
-    if (status != SF_STATUS_OK) release(set);
+    status = options->pad ? sf_pad_prepare(set, error) : set->method->prepare(set, error);
+    if (status != SF_STATUS_OK) sf_point_set_release(set);
     return status;
 }
 
@@ -190,7 +220,7 @@ sf_status sf_point_set_create(const sf_points_options *options, sf_point_set **s
     *set = NULL;
     sf_point_set *fresh = sf_aligned_alloc(sizeof *fresh);
     if (!fresh) return sf_fail_memory(error, "a point set", sizeof *fresh);
-    sf_status status = init(fresh, options, error);
+    sf_status status = sf_point_set_init(fresh, options, error);
     if (status == SF_STATUS_OK)
         *set = fresh;
     else
@@ -200,129 +230,6 @@ sf_status sf_point_set_create(const sf_points_options *options, sf_point_set **s
 
 void sf_point_set_destroy(sf_point_set *set) {
     if (!set) return;
-    release(set);
+    sf_point_set_release(set);
     sf_aligned_free(set);
-}
-
-/* ---- filling ---- */
-
-typedef enum number_type { F32, F64, U32 } number_type;
-
-/* A thread's share of a fill: its points, and memory of its own. */
-typedef struct fill_job {
-    const sf_point_set *set;
-    const sf_points_kernels *kernels;
-    uint64_t first;
-    size_t rows;
-    number_type type;
-    void *out;
-    uint32_t *scratch;
-    pthread_t thread;
-    int started;
-} fill_job;
-
-static size_t chunk_rows(uint32_t dims) { return dims < SF_POINTS_CHUNK_WORDS ? SF_POINTS_CHUNK_WORDS / dims : 1; }
-
-/* Of the cursor's state, and of the high and the low words of a chunk. */
-static size_t state_words(uint32_t dims) { return 2 * ((size_t)SF_POINTS_CHUNK_WORDS + dims); }
-static size_t scratch_words(uint32_t dims) { return state_words(dims) + 2 * chunk_rows(dims) * dims; }
-
-static void *fill_share(void *argument) {
-    fill_job *job = argument;
-    uint32_t dims = job->set->options.dims;
-    size_t step = chunk_rows(dims);
-    uint32_t *high = job->scratch + state_words(dims), *low = high + step * dims;
-    sf_points_cursor cursor = {job->set, job->kernels, job->scratch, UINT64_MAX};
-    for (size_t row = 0, rows; row < job->rows; row += rows) {
-        rows = job->rows - row < step ? job->rows - row : step;
-        size_t at = row * dims, count = rows * dims;
-        if (job->type == U32) high = (uint32_t *)job->out + at;
-        job->set->method->make(&cursor, job->first + row, rows, high, job->type == F64 ? low : NULL);
-        if (job->type == F32) job->kernels->f32(count, high, (float *)job->out + at);
-        if (job->type == F64) job->kernels->f64(count, high, low, (double *)job->out + at);
-    }
-    return NULL;
-}
-
-/* Threads pay from some 2^16 words each: starting one takes as long as making them. */
-static unsigned useful_threads(const sf_points_options *options, size_t count) {
-    enum { WORDS_PER_THREAD = 1 << 16, MAX_THREADS = 256 };
-    unsigned threads = options->threads ? options->threads : sf_processor_count();
-    size_t most = count / ((size_t)WORDS_PER_THREAD / options->dims + 1);
-    if (threads > MAX_THREADS) threads = MAX_THREADS;
-    return most < threads ? (unsigned)most + !most : threads;
-}
-
-static size_t size_of(number_type type) { return type == F64 ? sizeof(double) : sizeof(float); }
-
-static void share_out(fill_job *jobs, unsigned threads, const sf_point_set *set, uint64_t first, size_t count,
-                      number_type type, void *out) {
-    uint32_t dims = set->options.dims;
-    size_t done = 0, share = count / threads;
-    for (unsigned i = 0; i < threads; ++i, done += share)
-        jobs[i] = (fill_job){.set = set,
-                             .kernels = sf_points_kernels_at(sf_isa_active()),
-                             .first = first + done,
-                             .rows = i + 1 == threads ? count - done : share,
-                             .type = type,
-                             .out = (char *)out + done * dims * size_of(type),
-                             .scratch = jobs[0].scratch + i * scratch_words(dims)};
-}
-
-static sf_status fill(const sf_point_set *set, uint64_t first, size_t count, number_type type, void *out,
-                      sf_error *error) {
-    sf_status status = check_range(&set->options, first, count, error);
-    if (status != SF_STATUS_OK || count == 0) return status;
-    uint32_t dims = set->options.dims;
-    unsigned threads = useful_threads(&set->options, count);
-    size_t bytes = threads * (sizeof(fill_job) + scratch_words(dims) * sizeof(uint32_t)) + SF_ALIGNMENT;
-    uint32_t *scratch = sf_aligned_alloc(bytes);
-    if (!scratch) return sf_fail_memory(error, "the scratch of a fill", bytes);
-    fill_job *jobs = (fill_job *)(void *)(scratch + threads * scratch_words(dims));
-    jobs[0].scratch = scratch;
-    share_out(jobs, threads, set, first, count, type, out);
-    /* The last share is the caller's, and those whose thread could not be had. */
-    for (unsigned i = 0; i + 1 < threads; ++i)
-        jobs[i].started = pthread_create(&jobs[i].thread, NULL, fill_share, jobs + i) == 0;
-    for (unsigned i = threads; i-- > 0;)
-        if (!jobs[i].started) fill_share(jobs + i);
-    for (unsigned i = 0; i + 1 < threads; ++i)
-        if (jobs[i].started) pthread_join(jobs[i].thread, NULL);
-    sf_aligned_free(scratch);
-    return SF_STATUS_OK;
-}
-
-static sf_status fill_once(const sf_points_options *options, size_t count, number_type type, void *out,
-                           sf_error *error) {
-    sf_points_options complete = *options;
-    if (complete.total == 0 && options->first <= UINT64_MAX - count) complete.total = options->first + count;
-    sf_point_set set;
-    sf_status status = check_pattern(options->pattern, options->dims, error);
-    if (status == SF_STATUS_OK) status = check_range(&complete, options->first, count, error);
-    if (status == SF_STATUS_OK) status = init(&set, &complete, error);
-    if (status != SF_STATUS_OK) return status;
-    status = fill(&set, options->first, count, type, out, error);
-    release(&set);
-    return status;
-}
-
-sf_status sf_points_fill_f32(const sf_points_options *options, size_t count, float *out, sf_error *error) {
-    return fill_once(options, count, F32, out, error);
-}
-sf_status sf_points_fill_f64(const sf_points_options *options, size_t count, double *out, sf_error *error) {
-    return fill_once(options, count, F64, out, error);
-}
-sf_status sf_points_fill_u32(const sf_points_options *options, size_t count, uint32_t *out, sf_error *error) {
-    return fill_once(options, count, U32, out, error);
-}
-
-sf_status sf_point_set_fill_f32(const sf_point_set *set, uint64_t first, size_t count, float *out, sf_error *error) {
-    return fill(set, first, count, F32, out, error);
-}
-sf_status sf_point_set_fill_f64(const sf_point_set *set, uint64_t first, size_t count, double *out, sf_error *error) {
-    return fill(set, first, count, F64, out, error);
-}
-sf_status sf_point_set_fill_u32(const sf_point_set *set, uint64_t first, size_t count, uint32_t *out,
-                                sf_error *error) {
-    return fill(set, first, count, U32, out, error);
 }

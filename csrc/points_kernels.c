@@ -3,8 +3,6 @@
 
 #include "points_kernels.h"
 
-#include <string.h>
-
 #include "platform.h"
 
 static void f32(size_t count, const uint32_t *SF_RESTRICT high, float *SF_RESTRICT out) {
@@ -13,65 +11,7 @@ static void f32(size_t count, const uint32_t *SF_RESTRICT high, float *SF_RESTRI
 
 static void f64(size_t count, const uint32_t *SF_RESTRICT high, const uint32_t *SF_RESTRICT low,
                 double *SF_RESTRICT out) {
-    /* 32 bits and 21 bits, each and their sum exact. The offset makes the word a signed one,
-     * which every level can convert. */
-    for (size_t i = 0; i < count; ++i) {
-        double top = (double)(int32_t)(high[i] ^ 0x80000000u) + 0x1p31;
-        out[i] = top * 0x1p-32 + (double)(int32_t)(low[i] >> 11) * 0x1p-53;
-    }
-}
-
-static void xor_words(size_t count, const uint32_t *SF_RESTRICT a, const uint32_t *SF_RESTRICT b,
-                      uint32_t *SF_RESTRICT out) {
-    for (size_t i = 0; i < count; ++i) out[i] = a[i] ^ b[i];
-}
-
-static void owen_words(size_t count, const uint32_t *SF_RESTRICT a, const uint32_t *SF_RESTRICT b,
-                       const uint32_t *SF_RESTRICT keys, uint32_t *SF_RESTRICT out) {
-    for (size_t i = 0; i < count; ++i) out[i] = sf_reverse_bits32(sf_owen_hash32(a[i] ^ b[i], keys[i]));
-}
-
-/* Rows begin .. end - 1 of the block whose high bits are `state`. */
-static void sobol_block(const sf_sobol_tables *t, size_t begin, size_t end, const uint32_t *state, uint32_t *out) {
-    size_t word = begin * t->dims, last = end * t->dims;
-    while (word < last) {
-        size_t offset = word % t->period, count = t->period - offset;
-        if (count > last - word) count = last - word;
-        if (t->keys)
-            owen_words(count, t->low + word, state + offset, t->keys + offset, out);
-        else
-            xor_words(count, t->low + word, state + offset, out);
-        word += count;
-        out += count;
-    }
-}
-
-static void sobol(const sf_sobol_tables *t, uint64_t first, size_t rows, uint32_t *state, uint32_t *out) {
-    size_t block = (size_t)1 << t->block_bits;
-    while (rows) {
-        size_t begin = (size_t)(first & (block - 1)), count = block - begin < rows ? block - begin : rows;
-        sobol_block(t, begin, begin + count, state, out);
-        first += count;
-        rows -= count;
-        out += count * t->dims;
-        if (first & (block - 1)) continue;
-        /* Counting up flips the trailing ones of the block's number and the zero above them. */
-        uint64_t number = first >> t->block_bits;
-        unsigned carry = 0;
-        while (!(number >> carry & 1)) ++carry;
-        if (carry < 32 - t->block_bits) {
-            const uint32_t *SF_RESTRICT step = t->steps + (size_t)carry * t->period;
-            for (uint32_t i = 0; i < t->period; ++i) state[i] ^= step[i];
-        }
-    }
-}
-
-static void owen_low(size_t count, const uint32_t *SF_RESTRICT high, const uint32_t *SF_RESTRICT keys,
-                     uint32_t period, uint32_t *SF_RESTRICT low) {
-    for (size_t begin = 0; begin < count; begin += period) {
-        size_t n = count - begin < period ? count - begin : period;
-        for (size_t i = 0; i < n; ++i) low[begin + i] = sf_owen_low_word(high[begin + i], keys[i]);
-    }
+    for (size_t i = 0; i < count; ++i) out[i] = sf_double_from_words(high[i], low[i]);
 }
 
 static void row_keys(uint64_t seed, uint64_t first, size_t rows, uint64_t *SF_RESTRICT keys) {
@@ -115,5 +55,4 @@ static void place(size_t rows, uint32_t dims, const uint32_t *sides, const uint3
         }
 }
 
-const sf_points_kernels SF_AT_LEVEL(sf_points_kernels) = {f32,      f64,      sobol,        owen_low,
-                                                          row_keys, random_words, place};
+const sf_points_kernels SF_AT_LEVEL(sf_points_kernels) = {f32, f64, row_keys, random_words, place};

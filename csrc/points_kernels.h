@@ -7,28 +7,18 @@
 #include "level.h"
 #include "sunfleck/points.h"
 
-/* A Sobol' net laid out for filling rows in order. A block of 2^block_bits points shares the high
- * bits of its index: its words are those of block 0 (`low`) XOR one row of the high bits, and
- * the row of the next block differs by one row of `steps`. Rows are repeated until they are long
- * enough for a vector loop. */
-typedef struct sf_sobol_tables {
-    uint32_t dims;
-    unsigned block_bits;
-    uint32_t period;   /* words of a repeated row; divides the words of a block */
-    uint32_t *columns; /* [32][dims]: direction numbers, bits reversed where `keys` is set */
-    uint32_t *low;     /* [2^block_bits][dims] */
-    uint32_t *steps;   /* [32 - block_bits][period]: XOR of columns block_bits .. block_bits + k */
-    uint32_t *keys;    /* [period], of the Owen scramble; NULL: plain */
-} sf_sobol_tables;
+typedef enum sf_number_type { SF_NUMBER_F32 = 0, SF_NUMBER_F64, SF_NUMBER_U32 } sf_number_type;
+
+/* A double in [0,1) from 32 bits and the 21 top bits of a further word, each and their sum exact.
+ * The offset makes the upper word a signed one, which every level can convert. */
+static inline double sf_double_from_words(uint32_t high, uint32_t low) {
+    double top = (double)(int32_t)(high ^ 0x80000000u) + 0x1p31;
+    return top * 0x1p-32 + (double)(int32_t)(low >> 11) * 0x1p-53;
+}
 
 typedef struct sf_points_kernels {
     void (*f32)(size_t count, const uint32_t *high, float *out);
     void (*f64)(size_t count, const uint32_t *high, const uint32_t *low, double *out);
-    /* Points first .. first + rows - 1; `state` is the repeated row of high bits of the block
-     * that `first` lies in, and on return that of first + rows. */
-    void (*sobol)(const sf_sobol_tables *tables, uint64_t first, size_t rows, uint32_t *state, uint32_t *out);
-    /* The low words of Owen-scrambled points: hashes of word and key. */
-    void (*owen_low)(size_t count, const uint32_t *high, const uint32_t *keys, uint32_t period, uint32_t *low);
     /* keys[i] = sf_hash64(seed, first + i). */
     void (*row_keys)(uint64_t seed, uint64_t first, size_t rows, uint64_t *keys);
     /* The words of sf_mix64(key of the row + (dimension + 1) * golden ratio). */
@@ -59,14 +49,6 @@ static inline uint64_t sf_place_in_cell(uint64_t random, uint32_t cell, uint32_t
 /* The random word of the patterns random and jittered. */
 static inline uint64_t sf_random_word(uint64_t row_key, uint32_t dimension) {
     return sf_mix64(row_key + (dimension + UINT64_C(1)) * UINT64_C(0x9e3779b97f4a7c15));
-}
-
-/* What continues an Owen-scrambled word below its 32 bits. Distinct indices have distinct words,
- * so that Owen's flips beyond depth 32 are independent uniform bits: any hash of the word. */
-static inline uint32_t sf_owen_low_word(uint32_t word, uint32_t key) {
-    word = (word ^ key ^ 0x6a09e667u) * 0x7feb352du;
-    word = (word ^ word >> 15) * 0x846ca68bu;
-    return word ^ word >> 16;
 }
 
 #endif

@@ -5,6 +5,7 @@
 #ifndef SUNFLECK_POINTS_SET_H
 #define SUNFLECK_POINTS_SET_H
 
+#include "net_kernels.h"
 #include "points_kernels.h"
 #include "sunfleck/points.h"
 
@@ -13,12 +14,14 @@ enum { SF_POINTS_CHUNK_WORDS = 4096 };
 
 typedef struct sf_pattern_method sf_pattern_method;
 typedef struct sf_halton_tables sf_halton_tables; /* one for each dimension */
+typedef struct sf_pad_tables sf_pad_tables;
 
 struct sf_point_set {
     const sf_pattern_method *method;
     sf_points_options options; /* with the default scramble resolved */
     uint32_t *sides;           /* uniform, jittered: of the grid; NULL where the total is not given */
-    sf_sobol_tables *sobol;
+    sf_net_tables *net;
+    sf_pad_tables *padded; /* where options.pad is set, instead of `net` */
     sf_halton_tables *halton;
 };
 
@@ -26,8 +29,9 @@ struct sf_point_set {
 typedef struct sf_points_cursor {
     const sf_point_set *set;
     const sf_points_kernels *kernels;
-    uint32_t *state;      /* sobol: the high part of the block at `next`; jittered: cells */
-    uint64_t next;        /* index for which `state` holds; UINT64_MAX: none */
+    uint32_t *state; /* nets: the high part of the block at `next`; jittered: cells */
+    uint64_t next;   /* index for which `state` holds; UINT64_MAX: none */
+    const sf_net_kernels *net_kernels;
 } sf_points_cursor;
 
 /* What points.c knows of a pattern. */
@@ -44,10 +48,32 @@ struct sf_pattern_method {
     void (*make)(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
 };
 
-/* sobol.c */
-sf_status sf_sobol_prepare(sf_point_set *set, sf_error *error);
-void sf_sobol_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
-void sf_sobol_release(sf_sobol_tables *tables);
+/* points.c: whether the pattern has so many dimensions, and points first .. first + count - 1. */
+sf_status sf_points_check_pattern(sf_pattern pattern, uint32_t dims, sf_error *error);
+sf_status sf_points_check_dims(const sf_points_options *options, sf_error *error); /* with `pad` */
+sf_status sf_points_check_range(const sf_points_options *options, uint64_t first, uint64_t count, sf_error *error);
+
+/* points.c: checks all options and makes the tables; frees what a set holds, not the set. */
+sf_status sf_point_set_init(sf_point_set *set, const sf_points_options *options, sf_error *error);
+void sf_point_set_release(sf_point_set *set);
+
+/* net.c: sobol and sz. `rows` writes numbers of a type, `make` words with nested scrambling. */
+sf_status sf_net_prepare(sf_point_set *set, sf_error *error);
+void sf_net_release(sf_net_tables *tables);
+void sf_net_rows(sf_points_cursor *cursor, uint64_t first, size_t rows, sf_number_type type, int streams, void *out);
+void sf_net_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
+
+/* sz.c: applies the matrix of a dimension to words whose bit k is digit k. The matrix of d is that
+ * of d % 2^(2^r) after that of the rest. */
+void sf_sz_transform(uint32_t dimension, uint32_t *digits, unsigned count);
+
+/* points_pad.c: sobol and sz with `pad`. */
+sf_status sf_pad_prepare(sf_point_set *set, sf_error *error);
+void sf_pad_release(sf_pad_tables *tables);
+void sf_pad_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
+
+/* The key by which a padded set shuffles the index; words from 2^32 on are no dimension's. */
+static inline uint64_t sf_padded_key(uint64_t seed, uint32_t set) { return sf_hash64(seed, UINT64_C(1) << 32 | set); }
 
 /* halton.c */
 sf_status sf_halton_prepare(sf_point_set *set, sf_error *error);

@@ -30,7 +30,7 @@ from sunfleck.estimate import (
 from sunfleck.integrate import Integral, IntegralLook, integrate
 from sunfleck.load import load
 from sunfleck.mapping import MAPPINGS
-from sunfleck.points import PATTERNS, points, valid_counts
+from sunfleck.points import PATTERNS, SCRAMBLES, points, valid_counts
 from sunfleck.render import STOP_REASONS, Image, Progress, Summary, render
 from sunfleck.rng import RNGS, Rng
 from sunfleck.scene import Camera, Mesh, Plan, PlanDimensions, Scene, SceneInfo
@@ -42,6 +42,7 @@ __all__ = [
     "MAPPINGS",
     "PATTERNS",
     "RNGS",
+    "SCRAMBLES",
     "STOP_REASONS",
     "BatchMeans",
     "Camera",
