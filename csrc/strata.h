@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* Random places in the strata of one dimension, [cell / count, (cell + 1) / count). */
+#ifndef SUNFLECK_STRATA_H
+#define SUNFLECK_STRATA_H
+
+#include "sunfleck/base.h"
+
+/* Up to so many strata a float holds each; beyond, a double does. */
+#define SF_FLOAT_STRATA (UINT32_C(1) << 24)
+
+/* ceil(cell * 2^53 / count): the least double that is not below the stratum's border. */
+static inline uint64_t sf_stratum_border53(uint64_t cell, uint64_t count) {
+    uint64_t top = cell << 32, rest = top % count << 21; /* count is at most 2^32 */
+    return (top / count << 21) + rest / count + (rest % count != 0);
+}
+
+/* A 32-bit hash of a point and a dimension's key. Multipliers as in permutation.h. */
+static inline uint32_t sf_stratum_hash(uint32_t index, uint32_t key) {
+    uint32_t word = (index ^ key) * 0x7feb352du;
+    word = ((word ^ word >> 15) + key) * 0x846ca68bu;
+    word = (word ^ word >> 13) * 0x2c1b3c6du;
+    return word ^ word >> 16;
+}
+
+/* What continues that hash below its 32 bits. */
+static inline uint32_t sf_stratum_low_hash(uint32_t hash, uint32_t key) {
+    uint32_t word = (hash ^ key ^ 0x6a09e667u) * 0x297a2d39u;
+    word = (word ^ word >> 15) * 0x846ca68bu;
+    return word ^ word >> 16;
+}
+
+/* A word in the stratum, as are its top 24 bits: uniform among the multiples of 2^-32 from the
+ * first multiple of 2^-24 in the stratum up to that of the next. `inverse` is 1.0 / count, and
+ * count at most 2^24.
+ *
+ * Exact: cell * 2^24 / count is an integer or at least 2^-24 away from one, and the product with
+ * the rounded inverse is off by less than 2^24 * 2^-52, so that adding 1 - 2^-26 and dropping
+ * the fraction rounds up. */
+static inline uint32_t sf_stratum_word(uint32_t random, uint32_t cell, double inverse) {
+    double step = 0x1p24 * inverse, border = (double)(int32_t)cell * step + (1 - 0x1p-26);
+    uint32_t begin = (uint32_t)(int32_t)border, end = (uint32_t)(int32_t)(border + step);
+    return (begin << 8) + (uint32_t)((uint64_t)random * (end - begin) >> 24);
+}
+
+/* The 64-bit word in a stratum of any count up to 2^32; the 53-bit double lies in it too. */
+static inline uint64_t sf_stratum_place(uint32_t index, uint32_t key, uint32_t cell, uint64_t count) {
+    uint32_t random = sf_stratum_hash(index, key);
+    if (count <= SF_FLOAT_STRATA)
+        return (uint64_t)sf_stratum_word(random, cell, 1.0 / (double)count) << 32 | sf_stratum_low_hash(random, key);
+    uint64_t begin = sf_stratum_border53(cell, count), width = sf_stratum_border53(cell + UINT64_C(1), count) - begin;
+    return (begin << 11) + (random * width >> 21); /* the width is at most 2^29 */
+}
+
+#endif
