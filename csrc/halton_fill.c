@@ -151,8 +151,8 @@ static const uint64_t *parts_of(const sf_halton_tables *table, const sf_halton_k
 /* One dimension of rows that are `dims` wide. */
 static void fill_axis(const sf_halton_tables *table, const sf_halton_kernels *kernels, axis_cursor *at, size_t rows,
                       uint32_t dims, uint32_t *high, uint32_t *low) {
-    uint64_t scratch[RUN];
-    uint32_t column[2][RUN];
+    SF_ALIGNED(uint64_t) scratch[RUN];
+    SF_ALIGNED(uint32_t) column[2][RUN];
     const sf_halton_axis *axis = &table->axis;
     uint64_t second = axis->scramble == SF_SCRAMBLE_OWEN ? 0 : at->second;
     for (size_t row = 0, n; row < rows; row += n) {

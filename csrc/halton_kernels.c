@@ -32,7 +32,8 @@ static void round_words(size_t count, const uint32_t *SF_RESTRICT upper, const u
 }
 
 static void words(size_t count, const uint64_t *first_parts, uint64_t second, uint32_t fine, uint32_t *high) {
-    uint32_t upper[RUN], carried[RUN];
+    SF_ALIGNED(uint32_t) upper[RUN];
+    SF_ALIGNED(uint32_t) carried[RUN];
     for (size_t begin = 0, n; begin < count; begin += n) {
         n = count - begin < RUN ? count - begin : RUN;
         split(n, first_parts + begin, second, fine, upper, carried);
@@ -77,7 +78,9 @@ static void owen_end(size_t count, const sf_owen_base *base, uint32_t power, con
 
 static void owen(size_t count, const sf_owen_node *nodes, const sf_owen_base *base, size_t digits,
                  const sf_owen_digit *digit, uint32_t skipped_power, uint64_t *fractions) {
-    uint64_t keys[RUN], tails[RUN], prefixes[RUN];
+    SF_ALIGNED(uint64_t) keys[RUN];
+    SF_ALIGNED(uint64_t) tails[RUN];
+    SF_ALIGNED(uint64_t) prefixes[RUN];
     for (size_t begin = 0, n; begin < count; begin += n) {
         n = count - begin < RUN ? count - begin : RUN;
         for (size_t i = 0; i < n; ++i) {

@@ -19,7 +19,7 @@
 #include "points_set.h"
 #include "strata.h"
 
-enum { ORDER_KEYS = SF_PERMUTATION_MAX_ROUNDS + 1 };
+enum { ORDER_KEYS = SF_PERMUTATION_MAX_KEYS };
 
 /* The permutations of a pair of dimensions: what the keys of its order, of s and of t come from. */
 static uint64_t pair_key(uint64_t seed, uint32_t dimension, unsigned which) {
@@ -39,7 +39,7 @@ typedef struct multijittered_tables {
 } multijittered_tables;
 
 static void tabulate(uint32_t count, uint64_t key, uint32_t *images) {
-    uint32_t keys[SF_PERMUTATION_MAX_ROUNDS + 1];
+    uint32_t keys[SF_PERMUTATION_MAX_KEYS];
     sf_permutation_shape shape = sf_permutation_shape_of(count);
     sf_permutation_keys(&shape, key, keys);
     for (uint32_t i = 0; i < count; ++i) images[i] = sf_permute(&shape, i, keys);
@@ -98,7 +98,7 @@ void sf_multijittered_make(sf_points_cursor *cursor, uint64_t first, size_t rows
 float sf_multijittered_sample(uint64_t index, uint32_t dimension, uint64_t seed, const uint32_t sides[2]) {
     uint64_t total = (uint64_t)sides[0] * sides[1];
     assert(index < total && total <= SF_FLOAT_STRATA);
-    uint32_t keys[SF_PERMUTATION_MAX_ROUNDS + 1], m = sides[0], k = sides[1], second = dimension % 2;
+    uint32_t keys[SF_PERMUTATION_MAX_KEYS], m = sides[0], k = sides[1], second = dimension % 2;
     sf_permutation_shape shape = sf_permutation_shape_of(total), short_shape = sf_permutation_shape_of(second ? m : k);
     sf_permutation_keys(&shape, pair_key(seed, dimension, 0), keys);
     uint32_t cell = sf_permute(&shape, (uint32_t)index, keys), column = cell % m, row = cell / m;

@@ -137,13 +137,13 @@ static uint32_t stratum_of(const field *f, uint32_t run, uint32_t dimension, uin
 typedef struct orthogonal_tables {
     field levels;
     sf_permutation_shape shape;                      /* of the runs */
-    uint32_t order[SF_PERMUTATION_MAX_ROUNDS + 1];   /* keys of their order */
+    uint32_t order[SF_PERMUTATION_MAX_KEYS]; /* keys of their order */
     uint16_t images[];                               /* [dims][q]: the levels, permuted */
 } orthogonal_tables;
 
 sf_status sf_orthogonal_prepare(sf_point_set *set, sf_error *error) {
     uint64_t total = set->options.total, seed = set->options.seed;
-    uint32_t dims = set->options.dims, q = root(total), keys[SF_PERMUTATION_MAX_ROUNDS + 1];
+    uint32_t dims = set->options.dims, q = root(total), keys[SF_PERMUTATION_MAX_KEYS];
     sf_status status = check_count(total, dims, error);
     if (status != SF_STATUS_OK) return status;
     size_t bytes = sizeof(orthogonal_tables) + (size_t)dims * q * sizeof(uint16_t);
@@ -181,7 +181,7 @@ void sf_orthogonal_make(sf_points_cursor *cursor, uint64_t first, size_t rows, u
 
 float sf_orthogonal_sample(uint64_t index, uint32_t dimension, uint64_t seed, uint32_t levels) {
     assert(is_level_count(levels) && index < (uint64_t)levels * levels && dimension <= levels);
-    uint32_t round_keys[SF_PERMUTATION_MAX_ROUNDS + 1], total = levels * levels;
+    uint32_t round_keys[SF_PERMUTATION_MAX_KEYS], total = levels * levels;
     field f = make_field(levels);
     sf_permutation_shape runs = sf_permutation_shape_of(total), shape = sf_permutation_shape_of(levels);
     sf_permutation_keys(&runs, order_key(seed), round_keys);

@@ -16,11 +16,11 @@ static inline uint64_t sf_stratum_border53(uint64_t cell, uint64_t count) {
     return (top / count << 21) + rest / count + (rest % count != 0);
 }
 
-/* A 32-bit hash of a point and a dimension's key. Multipliers as in permutation.h. */
+/* A 32-bit hash of a point and a dimension's key. The multipliers are
+ * those of a 32-bit mixer that Wellons 2018, "Prospecting for Hash Functions", found by search. */
 static inline uint32_t sf_stratum_hash(uint32_t index, uint32_t key) {
     uint32_t word = (index ^ key) * 0x7feb352du;
     word = ((word ^ word >> 15) + key) * 0x846ca68bu;
-    word = (word ^ word >> 13) * 0x2c1b3c6du;
     return word ^ word >> 16;
 }
 
