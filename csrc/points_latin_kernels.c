@@ -68,10 +68,10 @@ static void place(size_t words, double inverse, const uint32_t *SF_RESTRICT rand
     for (size_t i = 0; i < words; ++i) high[i] = sf_stratum_word(random[i], cells[i], inverse);
 }
 
-/* The same where the count is 2^bits: the borders are multiples of 2^-bits. */
+/* The same where the count is 2^bits. */
 static void place_binary(size_t words, uint32_t bits, const uint32_t *SF_RESTRICT random,
                          const uint32_t *SF_RESTRICT cells, uint32_t *SF_RESTRICT high) {
-    for (size_t i = 0; i < words; ++i) high[i] = cells[i] << (31 - bits) << 1 | random[i] >> bits;
+    for (size_t i = 0; i < words; ++i) high[i] = sf_stratum_binary_word(random[i], cells[i], bits);
 }
 
 static void continue_below(size_t words, const uint32_t *SF_RESTRICT random, const uint32_t *SF_RESTRICT keys,
@@ -79,7 +79,7 @@ static void continue_below(size_t words, const uint32_t *SF_RESTRICT random, con
     for (size_t i = 0; i < words; ++i) low[i] = sf_stratum_low_hash(random[i], keys[i]);
 }
 
-/* With more strata than floats hold, one word at a time. */
+/* With about as many strata as floats hold, or more, one word at a time. */
 static void place_finely(const run *r, const uint32_t *keys, uint32_t *high, uint32_t *low) {
     for (size_t i = 0; i < r->words; ++i) {
         uint64_t word = sf_stratum_place(r->numbers[i], keys[i], r->cells[i], r->tables->count);
@@ -95,15 +95,16 @@ static void fill_run(run *r, uint32_t *high, uint32_t *low) {
     permute_once(r, 0, r->words, r->cells);
     walk(r);
     rotate(r->words, &t->shape, t->keys + (size_t)t->shape.rounds * 2 * t->period + r->at, r->cells);
-    if (t->count > SF_FLOAT_STRATA) {
+    int binary = (t->count & (t->count - 1)) == 0;
+    if (t->count > SF_FLOAT_STRATA || (t->count > SF_FLOAT_STRATA / 2 && !binary)) {
         place_finely(r, keys, high, low);
         return;
     }
     hash(r->words, keys, r->numbers);
-    if (t->count & (t->count - 1))
-        place(r->words, 1.0 / (double)t->count, r->numbers, r->cells, high);
-    else
+    if (binary)
         place_binary(r->words, t->count_bits, r->numbers, r->cells, high);
+    else
+        place(r->words, 1.0 / (double)t->count, r->numbers, r->cells, high);
     if (low) continue_below(r->words, r->numbers, keys, low);
 }
 
