@@ -40,24 +40,21 @@ def test_latin_has_one_point_in_each_stratum(n: int, dtype: str) -> None:
 
 
 def test_latin_holds_as_many_strata_as_floats_do() -> None:
-    n = 2**24 - 3
-    counts = np.zeros(n, dtype=np.uint8)
-    u = sf.points("latin", n, 1, seed=1)[:, 0]
-    # A product with n in longdouble is exact; in chunks, for memory.
-    for part in np.array_split(u, 16):
-        counts[strata(part, n)] += 1
-    assert (counts == 1).all()
+    # A tenth of the points: no stratum twice, and where a float's and a double's strata differ
+    # the word was rounded wrongly. Products with n in longdouble are exact.
+    n, some = 2**24 - 3, 2**20
+    whole = sf.points("latin", n, 1, seed=1)
+    doubles = sf.points("latin", n, 1, seed=1, dtype="float64")
+    for start in (0, n - some):
+        floats = strata(whole[start : start + some, 0], n)
+        assert len(np.unique(floats)) == some
+        assert np.array_equal(floats, strata(doubles[start : start + some, 0], n))
 
 
 def test_latin_beyond_floats_holds_its_strata_in_doubles() -> None:
-    options: Any = {"d": 2, "dtype": "float64", "seed": 4}
-    n = 2**24 + 11
-    u = sf.points("latin", n, **options)
-    for column in u.T:
-        counts = np.zeros(n, dtype=np.uint8)
-        for part in np.array_split(column, 16):
-            counts[strata(part, n)] += 1
-        assert (counts == 1).all()
+    n, some = 2**24 + 11, 2**20
+    u = sf.points("latin", n, 1, seed=4, dtype="float64")[:some, 0]
+    assert len(np.unique(strata(u, n))) == some
 
 
 def test_latin_removes_the_variance_of_an_additive_integrand() -> None:
@@ -85,7 +82,7 @@ def test_latin_pairs_strata_as_independent_permutations_do() -> None:
 
 
 @pytest.mark.parametrize("dtype", FLOATS)
-@pytest.mark.parametrize(("m", "k"), [(1, 1), (2, 1), (2, 2), (3, 2), (4, 4), (7, 5), (32, 31), (64, 33)])
+@pytest.mark.parametrize(("m", "k"), [(1, 1), (2, 1), (2, 2), (3, 2), (4, 4), (7, 5), (32, 31), (61, 53)])
 def test_multijittered_keeps_both_stratifications(m: int, k: int, dtype: str) -> None:
     n = m * k
     u = sf.points("multijittered", n, 5, seed=6, dtype=dtype)
@@ -119,14 +116,13 @@ def test_orthogonal_has_one_point_in_each_cell_of_every_pair(q: int) -> None:
                 assert fill_once(levels[:, a] * q + levels[:, b], n)
 
 
-@pytest.mark.parametrize("q", [64, 128, 256, 512, 1024, 2048, 4096, 4093])
+@pytest.mark.parametrize("q", [64, 128, 256, 512, 1024, 2048])
 def test_every_field_has_its_pairs(q: int) -> None:
-    # The last dimensions exercise the field's product; a polynomial that factors would leave a
-    # cell empty in some of them.
-    d = min(q + 1, 40)
+    # A polynomial that factors would leave cells of some pair empty.
+    d = 20 if q < 1024 else 5
     levels = strata(sf.points("orthogonal", q * q, d, seed=1)[:, -3:], q)
     for a, b in ((0, 1), (0, 2), (1, 2)):
-        assert len(np.unique(levels[:, a] * q + levels[:, b])) == q * q
+        assert (np.bincount(levels[:, a] * q + levels[:, b], minlength=q * q) == 1).all()
 
 
 @pytest.mark.parametrize(
@@ -151,7 +147,9 @@ def test_plain_halton_is_scipys_over_many_dimensions() -> None:
 
 def test_halton_of_17_in_base_3() -> None:
     # 17 is 122 in base 3, mirrored 0.221: 25 / 27.
-    assert sf.points("halton", 1, 2, scramble=None, start=17, dtype="float64")[0, 1] == pytest.approx(25 / 27, abs=2e-16)
+    assert sf.points("halton", 1, 2, scramble=None, start=17, dtype="float64")[0, 1] == pytest.approx(
+        25 / 27, abs=2e-16
+    )
 
 
 @pytest.mark.parametrize("dtype", FLOATS)
@@ -369,7 +367,9 @@ def test_sequences_go_on_from_any_start(pattern: str, scramble: str | None) -> N
     for start in (0, 1000, 2**33 - 700, 2**62):
         whole = sf.points(pattern, 1400, 70, seed=4, scramble=scramble, start=start, dtype="float64")
         for skipped in (1, 53, 699, 701):
-            part = sf.points(pattern, 1400 - skipped, 70, seed=4, scramble=scramble, start=start + skipped, dtype="float64")
+            part = sf.points(
+                pattern, 1400 - skipped, 70, seed=4, scramble=scramble, start=start + skipped, dtype="float64"
+            )
             assert np.array_equal(part, whole[skipped:])
 
 
