@@ -48,9 +48,11 @@ def read_vector(archive: str) -> list[int]:
 
 def main() -> None:
     vector = read_vector(sys.argv[1])
-    assert len(vector) == 9125 and all(z % 2 == 1 and z < 1 << 20 for z in vector)
+    assert len(vector) == 9125
+    assert all(z % 2 == 1 and z < 1 << 20 for z in vector)
     folded = [min(z, (1 << 20) - z) for z in vector]
-    assert len(set(folded[:DIMS])) == DIMS and folded[DIMS] in folded[:DIMS]
+    assert len(set(folded[:DIMS])) == DIMS
+    assert folded[DIMS] in folded[:DIMS]
 
     print(HEADER.format(dims=f"{DIMS:,}"))
     print("const uint32_t sf_lattice_vector[SF_LATTICE_MAX_DIMS] = {")

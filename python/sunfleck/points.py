@@ -54,9 +54,9 @@ def points(
         In [0, 2^64).
     scramble : str or None
         One of `sunfleck.SCRAMBLES` that the pattern takes: "shift", "lms", "owen", "nested"
-        (sobol, sz), "permuted", "owen" (halton, hammersley), "shift" (lattice, r2), "default" (the pattern's own: owen for sobol and sz,
-        permuted for halton, none elsewhere); None is the plain sequence, in the natural order
-        of the index.
+        (sobol, sz), "permuted", "owen" (halton, hammersley), "shift" (lattice, r2), "default"
+        (the pattern's own: owen for sobol and sz, permuted for halton, none elsewhere); None is
+        the plain sequence, in the natural order of the index.
     pad : 0, 2 or 4
         Of sobol and sz, with scramble "owen" or "nested": dimension k is dimension k % pad of
         a set of its own, the first in the pattern's order, the others shuffled. 0: no padding.
