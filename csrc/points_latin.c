@@ -29,11 +29,12 @@ static void fill_tables(sf_latin_tables *t, uint32_t dims, uint64_t seed) {
 }
 
 sf_status sf_latin_prepare(sf_point_set *set, sf_error *error) {
-    enum { PERIOD_WORDS = 256, HEADER_BYTES = (sizeof(sf_latin_tables) + SF_ALIGNMENT - 1) / SF_ALIGNMENT * SF_ALIGNMENT };
+    enum { PERIOD_WORDS = 256, HEADER_BYTES = (sizeof(sf_latin_tables) / SF_ALIGNMENT + 1) * SF_ALIGNMENT };
     uint32_t dims = set->options.dims;
     sf_permutation_shape shape = sf_permutation_shape_of(set->options.total);
     uint32_t rows = dims < PERIOD_WORDS ? PERIOD_WORDS / dims : 1, period = dims * rows;
-    size_t words = (size_t)period * (sf_permutation_key_count(&shape) + 2), bytes = HEADER_BYTES + words * sizeof(uint32_t);
+    size_t words = (size_t)period * (sf_permutation_key_count(&shape) + 2);
+    size_t bytes = HEADER_BYTES + words * sizeof(uint32_t);
     sf_latin_tables *t = set->block = sf_aligned_alloc(bytes);
     if (!t) return sf_fail_memory(error, "the tables of latin", bytes);
     uint32_t *memory = (uint32_t *)(void *)((char *)t + HEADER_BYTES);

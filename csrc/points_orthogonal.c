@@ -125,7 +125,8 @@ static uint32_t level_of(const field *f, uint32_t run, uint32_t dimension) {
     return dimension == f->size ? b : add(f, a, multiply(f, dimension, b));
 }
 
-static uint32_t stratum_of(const field *f, uint32_t run, uint32_t dimension, uint32_t level, const dimension_keys *keys) {
+static uint32_t stratum_of(const field *f, uint32_t run, uint32_t dimension, uint32_t level,
+                           const dimension_keys *keys) {
     uint64_t key = sf_hash64(keys->strata, level);
     uint32_t among = dimension == f->size ? run / f->size : run % f->size;
     uint32_t factor = 1 + (uint32_t)((key & 0xffffffffu) * (f->size - 1) >> 32);
