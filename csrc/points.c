@@ -14,10 +14,13 @@
 
 #define TAKES(scramble) (1u << (scramble))
 #define ANY_COUNT UINT64_MAX
+#define COUNT_24 (UINT64_C(1) << 24) /* strata that a float holds */
 #define COUNT_32 (UINT64_C(1) << 32)
 #define NET_SCRAMBLES                                                                                          \
     (TAKES(SF_SCRAMBLE_NONE) | TAKES(SF_SCRAMBLE_SHIFT) | TAKES(SF_SCRAMBLE_LMS) | TAKES(SF_SCRAMBLE_OWEN) | \
      TAKES(SF_SCRAMBLE_NESTED))
+#define DIGITS (TAKES(SF_SCRAMBLE_NONE) | TAKES(SF_SCRAMBLE_PERMUTED) | TAKES(SF_SCRAMBLE_OWEN))
+#define SHIFTED (TAKES(SF_SCRAMBLE_NONE) | TAKES(SF_SCRAMBLE_SHIFT))
 
 static const sf_pattern_method methods[SF_PATTERN_COUNT] = {
     [SF_PATTERN_UNIFORM] = {"uniform", "centres of a regular grid; aliases, and needs its total ahead",
@@ -29,13 +32,35 @@ static const sf_pattern_method methods[SF_PATTERN_COUNT] = {
     [SF_PATTERN_JITTERED] = {"jittered", "a random point in each cell of a grid; needs its total ahead",
                              SF_POINTS_MAX_DIMS, COUNT_32, 1, SF_SCRAMBLE_NONE, TAKES(SF_SCRAMBLE_NONE),
                              sf_grid_prepare, sf_jittered_make},
+    [SF_PATTERN_LATIN] = {"latin",
+                          "latin hypercube: n strata in each dimension, one point in each; needs its total ahead",
+                          SF_POINTS_MAX_DIMS, COUNT_32, 1, SF_SCRAMBLE_NONE, TAKES(SF_SCRAMBLE_NONE),
+                          sf_latin_prepare, sf_latin_make},
+    [SF_PATTERN_MULTIJITTERED] = {"multijittered",
+                                  "jittered and latin at once, correlated (Kensler 2013), by pairs of dimensions; "
+                                  "needs its total ahead",
+                                  SF_POINTS_MAX_DIMS, COUNT_24, 1, SF_SCRAMBLE_NONE, TAKES(SF_SCRAMBLE_NONE),
+                                  sf_multijittered_prepare, sf_multijittered_make},
+    [SF_PATTERN_ORTHOGONAL] = {"orthogonal",
+                               "latin hypercube on an orthogonal array: every pair of dimensions stratified; "
+                               "needs its total ahead",
+                               SF_ORTHOGONAL_MAX_DIMS, COUNT_24, 1, SF_SCRAMBLE_NONE, TAKES(SF_SCRAMBLE_NONE),
+                               sf_orthogonal_prepare, sf_orthogonal_make},
     [SF_PATTERN_HALTON] = {"halton", "radical inverses in the first d primes, digits permuted (Halton 1960)",
                            SF_HALTON_MAX_DIMS, ANY_COUNT, 0, SF_SCRAMBLE_PERMUTED,
-                           TAKES(SF_SCRAMBLE_NONE) | TAKES(SF_SCRAMBLE_PERMUTED), sf_halton_prepare, sf_halton_make},
+                           DIGITS, sf_halton_prepare, sf_halton_make},
+    [SF_PATTERN_HAMMERSLEY] = {"hammersley", "i / n, and Halton's radical inverses beside it; needs its total ahead",
+                               SF_HALTON_MAX_DIMS + 1, COUNT_32, 1, SF_SCRAMBLE_NONE, DIGITS, sf_hammersley_prepare,
+                               sf_hammersley_make},
     [SF_PATTERN_SOBOL] = {"sobol", "Sobol' sequence with Joe & Kuo's direction numbers, Owen-scrambled (Burley 2020)",
                           SF_SOBOL_MAX_DIMS, COUNT_32, 0, SF_SCRAMBLE_OWEN, NET_SCRAMBLES, sf_net_prepare, sf_net_make},
     [SF_PATTERN_SZ] = {"sz", "pairs of dimensions are (0, 2)-sequences in base 2, fours (0, 4) in base 4 (Ahmed 2024)",
                        SF_SZ_MAX_DIMS, COUNT_32, 0, SF_SCRAMBLE_OWEN, NET_SCRAMBLES, sf_net_prepare, sf_net_make},
+    [SF_PATTERN_LATTICE] = {"lattice", "rank-1 lattice with Kuo's generating vector; for periodic integrands",
+                            SF_LATTICE_MAX_DIMS, ANY_COUNT, 0, SF_SCRAMBLE_NONE, SHIFTED, sf_lattice_prepare,
+                            sf_lattice_make},
+    [SF_PATTERN_R2] = {"r2", "steps of powers of the generalized golden ratio modulo 1 (Roberts 2018)",
+                       SF_POINTS_MAX_DIMS, ANY_COUNT, 0, SF_SCRAMBLE_NONE, SHIFTED, sf_r2_prepare, sf_r2_make},
 };
 
 static const struct {
@@ -44,7 +69,8 @@ static const struct {
     [SF_SCRAMBLE_DEFAULT] = {"default", "the pattern's own: owen for sobol, sz, permuted for halton, none elsewhere"},
     [SF_SCRAMBLE_NONE] = {"none", "the plain pattern"},
     [SF_SCRAMBLE_PERMUTED] = {"permuted", "each digit by a random permutation of its place"},
-    [SF_SCRAMBLE_SHIFT] = {"shift", "one random word a dimension, XORed into every point's (digital shift)"},
+    [SF_SCRAMBLE_SHIFT] = {"shift",
+                           "one random word a dimension: XORed into every point's (sobol, sz), added modulo 1 (lattice, r2)"},
     [SF_SCRAMBLE_LMS] = {"lms", "a random lower triangular matrix a dimension, and a digital shift (Matousek 1998)"},
     [SF_SCRAMBLE_OWEN] = {"owen", "nested uniform scrambling by a hash (Owen 1995, Burley 2020, Vegdahl 2021)"},
     [SF_SCRAMBLE_NESTED] = {"nested", "nested uniform scrambling with a flip of its own at each node (Owen 1995)"},
@@ -126,15 +152,25 @@ sf_status sf_points_check_dims(const sf_points_options *options, sf_error *error
     return sf_points_check_pattern(options->pattern, 1, error); /* the set's own few dimensions every net has */
 }
 
+static sf_status nearest_counts(sf_pattern pattern, uint32_t dims, uint64_t n, uint64_t *below, uint64_t *above) {
+    uint64_t most = methods[pattern].max_count, least = methods[pattern].needs_total ? 1 : 0;
+    switch (pattern) {
+        case SF_PATTERN_UNIFORM:
+        case SF_PATTERN_JITTERED: return sf_grid_valid_counts(n, dims, below, above);
+        case SF_PATTERN_MULTIJITTERED: return sf_multijittered_valid_counts(n, below, above);
+        case SF_PATTERN_ORTHOGONAL: return sf_orthogonal_valid_counts(n, dims, below, above);
+        default: break;
+    }
+    *below = n < least ? 0 : n < most ? n : most;
+    *above = n < least ? least : n <= most ? n : 0;
+    return SF_STATUS_OK;
+}
+
 sf_status sf_pattern_valid_counts(sf_pattern pattern, uint32_t dims, uint64_t n, uint64_t *below, uint64_t *above,
                                   sf_error *error) {
     sf_status status = sf_points_check_pattern(pattern, dims, error);
     if (status != SF_STATUS_OK) return status;
-    if (methods[pattern].needs_total) return sf_grid_valid_counts(n, dims, below, above);
-    uint64_t most = methods[pattern].max_count;
-    *below = n < most ? n : most;
-    *above = n <= most ? n : 0;
-    return SF_STATUS_OK;
+    return nearest_counts(pattern, dims, n, below, above);
 }
 
 /* ---- options ---- */
@@ -198,6 +234,7 @@ void sf_point_set_release(sf_point_set *set) {
     sf_aligned_free(set->sides);
     sf_net_release(set->net);
     sf_pad_release(set->padded);
+    sf_aligned_free(set->block);
     sf_halton_release(set->halton, set->options.dims);
 }
 

@@ -32,7 +32,9 @@ static size_t chunk_rows(const sf_points_options *o) {
 }
 
 /* The scratch holds the cursor's state, the high and the low words of a chunk, and its numbers. */
-static size_t state_words(const sf_points_options *o) { return 2 * ((size_t)SF_POINTS_CHUNK_WORDS + o->dims); }
+static size_t state_words(const sf_points_options *o) {
+    return 2 * (size_t)SF_POINTS_CHUNK_WORDS + (size_t)SF_POINTS_STATE_WORDS * o->dims;
+}
 static size_t chunk_words(const sf_points_options *o) {
     return (chunk_rows(o) * o->dims + SF_ALIGNMENT - 1) / SF_ALIGNMENT * SF_ALIGNMENT;
 }

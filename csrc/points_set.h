@@ -12,6 +12,9 @@
 /* How many words a thread makes at a time, of 4 bytes: half of a 32 KiB first cache. */
 enum { SF_POINTS_CHUNK_WORDS = 4096 };
 
+/* Words of a thread's state for each dimension. */
+enum { SF_POINTS_STATE_WORDS = 10 };
+
 typedef struct sf_pattern_method sf_pattern_method;
 typedef struct sf_halton_tables sf_halton_tables; /* one for each dimension */
 typedef struct sf_pad_tables sf_pad_tables;
@@ -23,13 +26,15 @@ struct sf_point_set {
     sf_net_tables *net;
     sf_pad_tables *padded; /* where options.pad is set, instead of `net` */
     sf_halton_tables *halton;
+    void *block; /* the tables of the other patterns, one allocation; NULL: none */
 };
 
 /* A thread's place in a set: scratch that one call of a pattern's `make` leaves for the next. */
 typedef struct sf_points_cursor {
     const sf_point_set *set;
     const sf_points_kernels *kernels;
-    uint32_t *state; /* nets: the high part of the block at `next`; jittered: cells */
+    uint32_t *state; /* nets: the high part of the block at `next`; halton: a place in each
+                        dimension; jittered: cells; orthogonal: runs */
     uint64_t next;   /* index for which `state` holds; UINT64_MAX: none */
     const sf_net_kernels *net_kernels;
 } sf_points_cursor;
@@ -75,10 +80,33 @@ void sf_pad_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t
 /* The key by which a padded set shuffles the index; words from 2^32 on are no dimension's. */
 static inline uint64_t sf_padded_key(uint64_t seed, uint32_t set) { return sf_hash64(seed, UINT64_C(1) << 32 | set); }
 
-/* halton.c */
+/* halton_fill.c */
 sf_status sf_halton_prepare(sf_point_set *set, sf_error *error);
 void sf_halton_release(sf_halton_tables *tables, uint32_t dims);
 void sf_halton_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
+
+sf_status sf_hammersley_prepare(sf_point_set *set, sf_error *error);
+void sf_hammersley_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
+
+/* points_latin.c */
+sf_status sf_latin_prepare(sf_point_set *set, sf_error *error);
+void sf_latin_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
+
+/* points_multijittered.c */
+sf_status sf_multijittered_valid_counts(uint64_t n, uint64_t *below, uint64_t *above);
+sf_status sf_multijittered_prepare(sf_point_set *set, sf_error *error);
+void sf_multijittered_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
+
+/* points_orthogonal.c */
+sf_status sf_orthogonal_valid_counts(uint64_t n, uint32_t dims, uint64_t *below, uint64_t *above);
+sf_status sf_orthogonal_prepare(sf_point_set *set, sf_error *error);
+void sf_orthogonal_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
+
+/* points_lattice.c */
+sf_status sf_lattice_prepare(sf_point_set *set, sf_error *error);
+void sf_lattice_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
+sf_status sf_r2_prepare(sf_point_set *set, sf_error *error);
+void sf_r2_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
 
 /* points_grid.c */
 sf_status sf_grid_valid_counts(uint64_t n, uint32_t dims, uint64_t *below, uint64_t *above);

@@ -45,17 +45,18 @@ def points(
     pattern : str
         One of `sunfleck.PATTERNS`.
     n : int
-        How many points. uniform and jittered take some counts only, see `valid_counts`.
+        How many points. uniform, jittered, multijittered and orthogonal take some counts only,
+        see `valid_counts`; their total, and that of latin and hammersley, is ``start + n``.
     d : int
         Dimensions of a point, at least 1; at most 21,201 for sobol, 65,536 for sz and where `pad`
-        is given, 6,542 for halton.
+        is given, 6,542 for halton, 4,391 for lattice, sqrt(n) + 1 for orthogonal.
     seed : int
         In [0, 2^64).
     scramble : str or None
         One of `sunfleck.SCRAMBLES` that the pattern takes: "shift", "lms", "owen", "nested"
-        (sobol, sz), "permuted" (halton), "default" (the pattern's own: owen for sobol and sz,
-        permuted for halton, none elsewhere); None is the plain sequence, in the natural order
-        of the index.
+        (sobol, sz), "permuted", "owen" (halton, hammersley), "shift" (lattice, r2), "default"
+        (the pattern's own: owen for sobol and sz, permuted for halton, none elsewhere); None is
+        the plain sequence, in the natural order of the index.
     pad : 0, 2 or 4
         Of sobol and sz, with scramble "owen" or "nested": dimension k is dimension k % pad of
         a set of its own, the first in the pattern's order, the others shuffled. 0: no padding.

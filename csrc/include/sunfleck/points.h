@@ -10,8 +10,8 @@
  * A coordinate is a 32-bit word; the float is its top 24 bits, never 1. The double's top 32
  * bits are that word too, and its further 21 bits continue it. Where a pattern has strata or
  * elementary intervals whose borders are not multiples of 2^-24, the word is rounded so that the
- * float still lies inside its own. (Of halton, float and double are rounded each by itself: the
- * double is the exact fraction to 53 bits, the float may be 2^-24 above its top bits.)
+ * float still lies inside its own. (Of halton and hammersley, float and double are rounded each by
+ * itself: the double is the exact fraction to 53 bits, the float may be 2^-24 above its top bits.)
  */
 #ifndef SUNFLECK_POINTS_H
 #define SUNFLECK_POINTS_H
@@ -23,18 +23,33 @@ extern "C" {
 #endif
 
 #define SF_SOBOL_MAX_DIMS 21201u  /* Joe & Kuo's table */
-#define SF_HALTON_MAX_DIMS 6542u  /* the primes below 2^16 */
+#define SF_HALTON_MAX_DIMS 6542u  /* the primes below 2^16; hammersley has one more */
 #define SF_SZ_MAX_DIMS 65536u     /* the nimbers below 2^16 */
+#define SF_ORTHOGONAL_MAX_DIMS 4097u
+#define SF_LATTICE_MAX_DIMS 4391u /* of Kuo's generating vector */
 #define SF_POINTS_MAX_DIMS 65536u /* of the patterns without a table */
 
 typedef enum sf_pattern {
     SF_PATTERN_UNIFORM = 0, /* centres of a regular grid; needs its total */
     SF_PATTERN_RANDOM,      /* independent points */
     SF_PATTERN_JITTERED,    /* a random point in each cell of a grid; needs its total */
+    SF_PATTERN_LATIN,         /* latin hypercube: one point in each of n strata of each dimension;
+                                 needs its total */
+    SF_PATTERN_MULTIJITTERED, /* jittered and latin at once, correlated (Kensler 2013), for each
+                                 pair of dimensions; needs its total */
+    SF_PATTERN_ORTHOGONAL,    /* latin hypercube on an orthogonal array of strength 2: of n = q^2
+                                 points, one in each of q x q cells of every two dimensions (Tang
+                                 1993); needs its total */
     SF_PATTERN_HALTON,      /* radical inverses in the first d primes */
+    SF_PATTERN_HAMMERSLEY,  /* i / n, and halton in the other dimensions; needs its total */
     SF_PATTERN_SOBOL,       /* Joe & Kuo's direction numbers, in the natural order of the index */
     SF_PATTERN_SZ,          /* (0, 2)-sequences in base 2 side by side; four dimensions a (0, 4)-sequence
                                in base 4, sixteen (0, 16) in base 16, … (after Ahmed et al. 2024) */
+    SF_PATTERN_LATTICE,     /* rank-1 lattice in the order of the radical inverse in base 2, Kuo's
+                               generating vector for 2^10 .. 2^20 points (Cools, Kuo & Nuyens
+                               2006); beyond, it gets hardly better */
+    SF_PATTERN_R2,          /* 1/2 + (i + 1) g^(d+1) modulo 1, 1 / g the generalized golden ratio of
+                               the dimensions (Roberts 2018): a point depends on `dims` */
     SF_PATTERN_COUNT
 } sf_pattern;
 
@@ -43,12 +58,16 @@ typedef enum sf_scramble {
     SF_SCRAMBLE_DEFAULT = 0, /* owen for sobol and sz, permuted for halton, none for the others */
     SF_SCRAMBLE_NONE,        /* the plain pattern: the seed is not used (patterns that are random
                                 by nature draw on it all the same) */
-    SF_SCRAMBLE_PERMUTED,    /* halton: each digit, to infinity, by a random permutation of its place */
-    SF_SCRAMBLE_SHIFT,       /* one random word a dimension, XORed into every point's (sobol, sz) */
+    SF_SCRAMBLE_PERMUTED,    /* halton, hammersley: each digit, to infinity, by a random permutation of its place;
+                                hammersley's first dimension at a random place in its stratum */
+    SF_SCRAMBLE_SHIFT,       /* one random word a dimension, XORed into every point's (sobol, sz) or
+                                added to it modulo 1 (lattice, r2) */
     SF_SCRAMBLE_LMS,         /* sobol, sz: a random lower triangular matrix a dimension, and a shift
                                 (Matousek 1998) */
     SF_SCRAMBLE_OWEN,        /* sobol, sz: nested uniform scrambling by a hash (Burley 2020, with
-                                Vegdahl's 2021 constants) */
+                                Vegdahl's 2021 constants); halton, hammersley: each digit by a
+                                permutation that depends on all before it (Owen 2017), exact in
+                                the law of pairs */
     SF_SCRAMBLE_NESTED,      /* sobol, sz: nested uniform scrambling (Owen 1995), 64-bit keys */
     SF_SCRAMBLE_COUNT
 } sf_scramble;
@@ -75,7 +94,9 @@ int sf_pattern_takes_scramble(sf_pattern pattern, sf_scramble scramble);
 /* The nearest counts that the pattern takes at or below n and at or above it; 0 where there is
  * none. Both are n where n itself is valid, as it always is for patterns that need no total.
  * uniform and jittered take the product of `dims` integers of which the largest is at most
- * twice the smallest, up to 2^32: ("jittered", 2, 997) gives 992 = 32 x 31 and 999 = 37 x 27. */
+ * twice the smallest, up to 2^32: ("jittered", 2, 997) gives 992 = 32 x 31 and 999 = 37 x 27.
+ * multijittered takes such products of two integers up to 2^24, whatever the dimensions;
+ * orthogonal q^2, q a prime or a power of two, dims - 1 .. 4096; latin and hammersley any from 1. */
 sf_status sf_pattern_valid_counts(sf_pattern pattern, uint32_t dims, uint64_t n, uint64_t *below, uint64_t *above,
                                   sf_error *error);
 
@@ -147,7 +168,33 @@ float sf_random_sample(uint64_t index, uint32_t dimension, uint64_t seed);
 float sf_uniform_sample(uint64_t index, uint32_t dimension, uint32_t dims, const uint32_t *sides);
 float sf_jittered_sample(uint64_t index, uint32_t dimension, uint64_t seed, uint32_t dims, const uint32_t *sides);
 
+/* total 1 .. 2^32, index < total. */
+float sf_latin_sample(uint64_t index, uint32_t dimension, uint64_t seed, uint64_t total);
+
+/* `sides` as sf_grid_sides gives them for two dimensions, their product at most 2^24, index below it. */
+float sf_multijittered_sample(uint64_t index, uint32_t dimension, uint64_t seed, const uint32_t sides[2]);
+
+/* levels a prime or a power of two, 2 .. 4096; index < levels^2; dimension <= levels. */
+float sf_orthogonal_sample(uint64_t index, uint32_t dimension, uint64_t seed, uint32_t levels);
+
 float sf_halton_sample(uint64_t index, uint32_t dimension, uint64_t seed); /* dimension < SF_HALTON_MAX_DIMS */
+float sf_halton_owen_sample(uint64_t index, uint32_t dimension, uint64_t seed); /* the fill with that scramble */
+
+/* total 1 .. 2^32, index < total, dimension <= SF_HALTON_MAX_DIMS. */
+float sf_hammersley_sample(uint64_t index, uint32_t dimension, uint64_t total);
+
+/* dimension < SF_LATTICE_MAX_DIMS. */
+float sf_lattice_sample(uint64_t index, uint32_t dimension);
+float sf_lattice_shifted_sample(uint64_t index, uint32_t dimension, uint64_t seed); /* the fill with shift */
+
+/* increments[d] of a point's dims: the (d + 1)-th power of g, the root of g^dims + g^(dims + 1) = 1,
+ * as a fraction of 2^64, correctly rounded but for ties nearer than 2^-100. Some 0.1 ms. */
+void sf_r2_increments(uint32_t dims, uint64_t *increments);
+
+/* increment: sf_r2_increments' of the dimension. */
+float sf_r2_sample(uint64_t index, uint64_t increment);
+float sf_r2_shifted_sample(uint64_t index, uint32_t dimension, uint64_t seed, uint64_t increment);
+
 float sf_sobol_sample(uint32_t index, uint32_t dimension, uint64_t seed);  /* dimension < SF_SOBOL_MAX_DIMS */
 float sf_sz_sample(uint32_t index, uint32_t dimension, uint64_t seed);     /* dimension < SF_SZ_MAX_DIMS */
 
@@ -160,6 +207,10 @@ float sf_sz_sample_with(uint32_t index, uint32_t dimension, uint64_t seed, sf_sc
 uint32_t sf_sobol_bits(uint32_t index, uint32_t dimension);
 uint32_t sf_sz_bits(uint32_t index, uint32_t dimension);
 uint32_t sf_halton_bits(uint64_t index, uint32_t dimension);
+uint64_t sf_lattice_bits(uint64_t index, uint32_t dimension); /* of 64 bits, exact */
+
+/* What "shift" adds to lattice and r2, as a fraction of 2^64; r2 then begins at 0, not at 1/2. */
+uint64_t sf_shift_bits(uint64_t seed, uint32_t dimension);
 
 /* A coordinate's 64 bits, for sf_float_from_bits of the upper 32 and sf_double_from_bits: `word` of
  * an unscrambled net in base 2, scrambled as a dimension of sobol or sz is. The bits below 32
