@@ -90,6 +90,7 @@ void bind_rng(nb::module_ &m);
 void bind_points(nb::module_ &m);
 void bind_mapping(nb::module_ &m);
 void bind_estimate(nb::module_ &m);
+void bind_uniformity(nb::module_ &m);
 void bind_scene(nb::module_ &m);
 void bind_render(nb::module_ &m);
 

@@ -33,6 +33,7 @@ NB_MODULE(_core, m) {
     bind_points(m);
     bind_mapping(m);
     bind_estimate(m);
+    bind_uniformity(m);
     bind_scene(m);
     bind_render(m);
 }

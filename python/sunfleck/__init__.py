@@ -15,7 +15,7 @@ Examples
 """
 
 # What is heavy (OpenImageIO, trimesh, tqdm) is imported where it is used, not here.
-from sunfleck import mapping, scenes
+from sunfleck import mapping, scenes, uniformity
 from sunfleck._core import version as _version
 from sunfleck.error import Error
 from sunfleck.estimate import Moments, VectorMoments
@@ -52,5 +52,6 @@ __all__ = [
     "points",
     "render",
     "scenes",
+    "uniformity",
     "valid_counts",
 ]

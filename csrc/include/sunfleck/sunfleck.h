@@ -13,5 +13,6 @@
 #include "sunfleck/render.h"
 #include "sunfleck/rng.h"
 #include "sunfleck/scene.h"
+#include "sunfleck/uniformity.h"
 
 #endif
