@@ -4,6 +4,7 @@
 """qmc: what SciPy's own tests ask of an engine, of every pattern; SciPy's users of engines."""
 
 import copy
+import inspect
 import subprocess
 import sys
 import warnings
@@ -185,6 +186,15 @@ def test_optimizers_are_scipys(optimization: str) -> None:
     else:
         assert sf.uniformity.minimum_distance(sample) > sf.uniformity.minimum_distance(plain)
     assert np.array_equal(engine.reset().random(64), sample)  # its generator is reset too
+
+
+@pytest.mark.skipif("pad" not in inspect.signature(sf.points).parameters, reason="points has no padding")
+def test_padding_is_the_patterns() -> None:
+    options: dict[str, Any] = {"pad": 2}
+    expected = sf.points("sobol", 64, 8, seed=3, dtype="float64", **options)
+    engine = Engine("sobol", 8, seed=3, **options)
+    assert np.array_equal(np.concatenate([engine.random(16), engine.random(48)]), expected)
+    assert engine._init_quad["pad"] == 2
 
 
 def test_integers_and_scale() -> None:
