@@ -77,12 +77,13 @@ sf_status sf_discrepancy_kind_find(const char *name, sf_discrepancy_kind *kind, 
 
 sf_status sf_uniformity_check(const double *points, size_t count, uint32_t dims, int closed, sf_error *error) {
     if (count < 1 || dims < 1)
-        return sf_fail(error, SF_STATUS_INVALID_VALUE, "there are %zu points of %" PRIu32 " dimensions; give at least 1 of 1",
-                       count, dims);
+        return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                       "there are %zu points of %" PRIu32 " dimensions; give at least 1 of 1", count, dims);
     for (size_t i = 0; i < count * dims; ++i)
         if (!(points[i] >= 0.0 && (closed ? points[i] <= 1.0 : points[i] < 1.0)))
-            return sf_fail(error, SF_STATUS_INVALID_VALUE, "coordinate %zu of point %zu is %.17g; give values in [0,1%s",
-                           i % dims, i / dims, points[i], closed ? "]" : ")");
+            return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                           "coordinate %zu of point %zu is %.17g; give values in [0,1%s", i % dims, i / dims,
+                           points[i], closed ? "]" : ")");
     return SF_STATUS_OK;
 }
 

@@ -38,8 +38,9 @@ static sf_status measure_count(net *n, sf_error *error) {
         n->powers[n->levels] = (uint32_t)size;
         return SF_STATUS_OK;
     }
-    return sf_fail(error, SF_STATUS_INVALID_VALUE, "there are %zu points; a net in base %" PRIu32 " has %" PRIu64 " or %" PRIu64,
-                   n->count, n->base, size / n->base, size);
+    return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                   "there are %zu points; a net in base %" PRIu32 " has %" PRIu64 " or %" PRIu64, n->count, n->base,
+                   size / n->base, size);
 }
 
 /* The digits of a coordinate as one number. In a base that is no power of 2, a border's double is
