@@ -91,6 +91,7 @@ void bind_points(nb::module_ &m);
 void bind_mapping(nb::module_ &m);
 void bind_estimate(nb::module_ &m);
 void bind_integrate(nb::module_ &m);
+void bind_uniformity(nb::module_ &m);
 void bind_scene(nb::module_ &m);
 void bind_render(nb::module_ &m);
 

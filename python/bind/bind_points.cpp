@@ -82,4 +82,8 @@ void bind_points(nb::module_ &m) {
             return counts;
         },
         "pattern"_a, "dims"_a, "n"_a);
+
+    m.def(
+        "pattern_needs_total", [](const std::string &name) { return sf_pattern_needs_total(find_pattern(name)) != 0; },
+        "pattern"_a);
 }

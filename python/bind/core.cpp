@@ -34,6 +34,7 @@ NB_MODULE(_core, m) {
     bind_mapping(m);
     bind_estimate(m);
     bind_integrate(m);
+    bind_uniformity(m);
     bind_scene(m);
     bind_render(m);
 }

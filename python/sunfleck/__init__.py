@@ -14,8 +14,10 @@ Examples
 (64, 64, 3)
 """
 
-# What is heavy (OpenImageIO, trimesh, tqdm) is imported where it is used, not here.
-from sunfleck import estimate, mapping, scenes
+# What is heavy (OpenImageIO, trimesh, tqdm, SciPy) is imported where it is used, not here.
+from typing import TYPE_CHECKING, Any
+
+from sunfleck import estimate, mapping, scenes, uniformity
 from sunfleck._core import version as _version
 from sunfleck.error import Error
 from sunfleck.estimate import (
@@ -35,6 +37,19 @@ from sunfleck.render import STOP_REASONS, Image, Progress, Summary, render
 from sunfleck.rng import RNGS, Rng
 from sunfleck.scene import Camera, Mesh, Plan, PlanDimensions, Scene, SceneInfo
 from sunfleck.tolerance import Tolerance
+
+if TYPE_CHECKING:
+    from sunfleck import qmc as qmc
+else:
+
+    def __getattr__(name: str) -> Any:
+        """`sunfleck.qmc`, which needs SciPy, when it is first asked for."""
+        if name != "qmc":
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        import importlib
+
+        return importlib.import_module("sunfleck.qmc")
+
 
 __version__ = _version()
 
@@ -72,5 +87,6 @@ __all__ = [
     "points",
     "render",
     "scenes",
+    "uniformity",
     "valid_counts",
 ]

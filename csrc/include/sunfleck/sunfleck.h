@@ -14,5 +14,6 @@
 #include "sunfleck/render.h"
 #include "sunfleck/rng.h"
 #include "sunfleck/scene.h"
+#include "sunfleck/uniformity.h"
 
 #endif
