@@ -22,13 +22,14 @@ from sunfleck.estimate import Moments, VectorMoments
 from sunfleck.load import load
 from sunfleck.mapping import MAPPINGS
 from sunfleck.points import PATTERNS, points, valid_counts
-from sunfleck.render import STOP_REASONS, Image, Progress, Summary, Tolerance, render
+from sunfleck.render import AOVS, STOP_REASONS, Image, Progress, Summary, Tolerance, render
 from sunfleck.rng import RNGS, Rng
 from sunfleck.scene import Camera, Mesh, Plan, PlanDimensions, Scene, SceneInfo
 
 __version__ = _version()
 
 __all__ = [
+    "AOVS",
     "MAPPINGS",
     "PATTERNS",
     "RNGS",
