@@ -5,6 +5,7 @@
 
 #include "batch.h"
 
+#include "aov.h"
 #include "coordinates_kernels.h"
 #include "shade_kernels.h"
 
@@ -38,6 +39,7 @@ static void trace_camera(run *r) {
     r->shade->camera(b, &r->context->camera, r->context->filter, lens ? b->coordinate_by_ray : NULL);
     sf_trace_nearest(b, scene, b->block_count, active, SF_COHERENT);
     r->shade->first_radiance(b, scene);
+    if (b->hit_sums) sf_aov_gather(b, r->context);
 }
 
 /* Light sampled from the vertices of bounce `bounce`. */

@@ -30,6 +30,7 @@ typedef struct sf_render_context {
     sf_camera_frame camera;
     sf_pixel_filter filter;
     sf_seed_policy seeds;
+    uint32_t aovs; /* bit k: sf_aov k is asked for */
     sf_isa isa;
 } sf_render_context;
 
@@ -66,6 +67,7 @@ typedef struct sf_batch {
     sf_block blocks[SF_BLOCKS];
     sf_block_statistics statistics[SF_BLOCKS];
     uint32_t block_count;
+    struct sf_hit_sums *hit_sums; /* by block; NULL where no AOV asks for the first hits */
 } sf_batch;
 
 /* Traces the paths of the batch's blocks: fills `statistics`. */

@@ -9,10 +9,13 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "aov.h"
 #include "error.h"
+#include "mask.h"
 #include "platform.h"
 #include "stopping.h"
 
+#define OWN_CHANNELS 7
 #define MAX_ATTRIBUTES 40
 #define TEXT_SIZE 96
 
@@ -32,7 +35,7 @@ const char *sf_seed_policy_name(sf_seed_policy policy) {
 }
 
 const char *sf_stop_reason_name(sf_stop_reason reason) {
-    static const char *const names[] = {"fixed", "met", "max samples", "out of time", "suspicious", "interrupted"};
+    static const char *const names[] = {"fixed", "met", "max samples", "out of time", "suspicious", "interrupted", "masked"};
     return (unsigned)reason < SF_STOP_REASON_COUNT ? names[reason] : NULL;
 }
 
@@ -47,11 +50,11 @@ static void *take(char **memory, size_t bytes) {
 }
 
 /* Takes every array from one block of pages, which starts as zeros. */
-static sf_status allocate_arrays(sf_film *film, sf_error *error) {
+static sf_status allocate_arrays(sf_film *film, bool masked, sf_error *error) {
     size_t traced = (size_t)film->width * film->height, pixels = (size_t)film->crop_width * film->crop_height;
     size_t rows = film->crop_height * sizeof *film->rows;
     size_t pools = sf_stop_pool_count(film) * sizeof *film->decay;
-    film->memory_bytes = traced * sizeof *film->pixels + pools + rows + pixels * (6 * 4 + 1) + 8 * SF_ALIGNMENT;
+    film->memory_bytes = traced * sizeof *film->pixels + pools + rows + pixels * (6 * 4 + 1 + masked) + 9 * SF_ALIGNMENT;
     film->memory = sf_pages_alloc(film->memory_bytes);
     if (!film->memory) return sf_fail_memory(error, "the film", film->memory_bytes);
     char *memory = film->memory;
@@ -63,6 +66,7 @@ static sf_status allocate_arrays(sf_film *film, sf_error *error) {
     film->half_width = take(&memory, pixels * sizeof *film->half_width);
     film->samples = take(&memory, pixels * sizeof *film->samples);
     film->reason = take(&memory, pixels);
+    film->mask = masked ? take(&memory, pixels) : NULL;
     return SF_STATUS_OK;
 }
 
@@ -78,7 +82,9 @@ sf_status sf_film_create(const sf_render_options *options, sf_film **out, sf_err
     film->y0 = crop[1] / SF_CELL_SIZE * SF_CELL_SIZE;
     film->width = smaller(round_up(crop[2]), options->width) - film->x0;
     film->height = smaller(round_up(crop[3]), options->height) - film->y0;
-    sf_status status = allocate_arrays(film, error);
+    sf_status status = allocate_arrays(film, options->mask != NULL, error);
+    if (!status && options->aovs) status = sf_aov_create(options, film, error);
+    if (!status) sf_mask_apply(options, film);
     if (status) {
         sf_film_destroy(film);
         film = NULL;
@@ -89,6 +95,7 @@ sf_status sf_film_create(const sf_render_options *options, sf_film **out, sf_err
 
 void sf_film_destroy(sf_film *film) {
     if (!film) return;
+    sf_aov_destroy(film->aovs);
     sf_pages_free(film->memory, film->memory_bytes);
     for (size_t i = 0; i < film->attribute_count; ++i) free((char *)film->attributes[i].text);
     free(film->attributes);
@@ -104,15 +111,15 @@ float sf_film_half_width(const sf_film_pixel *pixel, double z) {
     return (float)(z * sf_vector_moments_standard_error(&pixel->moments) * sqrt(1.0 / 3.0));
 }
 
-/* The accumulators of row y of the crop. */
-static const sf_film_pixel *row_pixels(const sf_film *film, uint32_t y) {
+const sf_film_pixel *sf_film_row_pixels(const sf_film *film, uint32_t y) {
     return film->pixels + (size_t)(y + film->crop_y0 - film->y0) * film->width + (film->crop_x0 - film->x0);
 }
 
 void sf_film_sum_row(sf_film *film, uint32_t y) {
-    const sf_film_pixel *pixels = row_pixels(film, y);
+    const sf_film_pixel *pixels = sf_film_row_pixels(film, y);
     double sum = 0;
     for (uint32_t x = 0; x < film->crop_width; ++x) {
+        if (!sf_film_counts(film, x, y)) continue;
         const double *mean = pixels[x].moments.mean;
         sum += (mean[0] + mean[1] + mean[2]) / 3;
     }
@@ -122,7 +129,13 @@ void sf_film_sum_row(sf_film *film, uint32_t y) {
 double sf_film_level(const sf_film *film) {
     double sum = 0;
     for (uint32_t y = 0; y < film->crop_height; ++y) sum += film->rows[y].level;
-    return sum / ((double)film->crop_width * film->crop_height);
+    return sum / (double)film->counted;
+}
+
+/* A pixel that the mask leaves out. The arrays began as zeros. */
+static void leave_out(sf_film *film, size_t i) {
+    film->half_width[i] = INFINITY;
+    film->reason[i] = SF_STOP_MASKED;
 }
 
 static void resolve_pixel(sf_film *film, const sf_film_pixel *pixel, size_t i) {
@@ -135,11 +148,16 @@ static void resolve_pixel(sf_film *film, const sf_film_pixel *pixel, size_t i) {
 }
 
 void sf_film_resolve_row(sf_film *film, uint32_t y) {
-    const sf_film_pixel *pixels = row_pixels(film, y);
+    const sf_film_pixel *pixels = sf_film_row_pixels(film, y);
     sf_film_row row = {.level = film->rows[y].level, .worst = -1};
     for (uint32_t x = 0; x < film->crop_width; ++x) {
         const sf_film_pixel *pixel = pixels + x;
-        resolve_pixel(film, pixel, (size_t)y * film->crop_width + x);
+        size_t i = (size_t)y * film->crop_width + x;
+        if (!sf_film_counts(film, x, y)) {
+            leave_out(film, i);
+            continue;
+        }
+        resolve_pixel(film, pixel, i);
         row.samples += pixel->moments.count + pixel->moments.nonfinite;
         row.nonfinite += pixel->moments.nonfinite;
         ++row.reasons[pixel->reason];
@@ -149,11 +167,12 @@ void sf_film_resolve_row(sf_film *film, uint32_t y) {
         row.worst_x = x + film->crop_x0;
     }
     film->rows[y] = row;
+    if (film->aovs) sf_aov_resolve_row(film, y);
 }
 
 void sf_film_summarize_rows(sf_film *film) {
     sf_film_summary *summary = &film->summary;
-    summary->pixels = (uint64_t)film->crop_width * film->crop_height;
+    summary->pixels = film->counted;
     summary->worst_half_width = -1;
     for (uint32_t y = 0; y < film->crop_height; ++y) {
         const sf_film_row *row = film->rows + y;
@@ -170,10 +189,7 @@ void sf_film_summarize_rows(sf_film *film) {
 
 uint32_t sf_film_width(const sf_film *film) { return film->crop_width; }
 uint32_t sf_film_height(const sf_film *film) { return film->crop_height; }
-size_t sf_film_channel_count(const sf_film *film) {
-    (void)film;
-    return 7;
-}
+size_t sf_film_channel_count(const sf_film *film) { return OWN_CHANNELS + sf_aov_channel_count(film->aovs); }
 
 sf_channel sf_film_channel(const sf_film *film, size_t index) {
     static const char *const colors[] = {"R", "G", "B"};
@@ -205,7 +221,7 @@ sf_channel sf_film_channel(const sf_film *film, size_t index) {
             channel.data = film->reason;
             channel.pixel_stride = 1;
             break;
-        default: break;
+        default: channel = sf_aov_channel(film->aovs, index - OWN_CHANNELS); break;
     }
     channel.row_stride = channel.pixel_stride * film->crop_width;
     return channel;
@@ -250,6 +266,11 @@ static void describe_options(sf_film *film, const sf_render_options *o) {
     describe(film, "seed", "%" PRIu64, o->seed);
     describe(film, "threads", "%" PRIu32, o->threads);
     describe(film, "tile_size", "%" PRIu32, o->tile_size);
+    char aovs[SF_AOV_TEXT_SIZE], mask[SF_MASK_TEXT_SIZE];
+    sf_aov_list(o->aovs, aovs);
+    sf_mask_describe(o, film, mask);
+    describe(film, "aovs", "%s", aovs);
+    describe(film, "mask", "%s", mask);
 }
 
 static void describe_outcome(sf_film *film) {

@@ -45,6 +45,8 @@ typedef struct sf_film_row {
     uint32_t worst_x;
 } sf_film_row;
 
+struct sf_aov_film;
+
 /* The cells that the crop touches, in pixels of the full frame, and what is kept of them. */
 struct sf_film {
     uint32_t x0, y0, width, height;         /* of the traced region */
@@ -59,12 +61,25 @@ struct sf_film {
     float *half_width;
     uint32_t *samples;
     uint8_t *reason;
+    struct sf_aov_film *aovs;               /* NULL where none was asked for */
+    uint8_t *mask;                          /* of the crop: 1 where the pixel counts; NULL: all do */
+    uint64_t counted;                       /* pixels of the crop that do */
+    uint64_t mask_hash;
+    double factor;                          /* standard errors in a half-width */
     sf_attribute *attributes;
     size_t attribute_count;
     sf_film_summary summary;
 };
 
 sf_status sf_film_create(const sf_render_options *options, sf_film **film, sf_error *error);
+
+/* Whether pixel (x, y) of the crop counts: the mask does not leave it out. */
+static inline int sf_film_counts(const sf_film *film, uint32_t x, uint32_t y) {
+    return !film->mask || film->mask[(size_t)y * film->crop_width + x];
+}
+
+/* The accumulators of row y of the crop. */
+const sf_film_pixel *sf_film_row_pixels(const sf_film *film, uint32_t y);
 
 /* Adds a block to its pixel; blocks of a pixel are added in the order of their base. */
 void sf_film_add(sf_film_pixel *pixel, const sf_block_statistics *block);
@@ -77,7 +92,8 @@ float sf_film_half_width(const sf_film_pixel *pixel, double z);
 /* Sums (R+G+B)/3 over row y of the crop, for sf_film_level once all rows are. */
 void sf_film_sum_row(sf_film *film, uint32_t y);
 
-/* The mean over the crop of (R+G+B)/3, summed in the order of the rows. */
+/* The mean of (R+G+B)/3 over the pixels of the crop that the mask leaves, summed in the order of
+ * the rows. */
 double sf_film_level(const sf_film *film);
 
 /* Fills row y of the crop's arrays from the accumulators. */

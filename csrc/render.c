@@ -18,9 +18,11 @@
 #include <math.h>
 #include <string.h>
 
+#include "aov.h"
 #include "batch.h"
 #include "error.h"
 #include "film.h"
+#include "mask.h"
 #include "pool.h"
 #include "render_options.h"
 #include "stopping.h"
@@ -33,6 +35,7 @@ enum { RUNNING = 0, OUT_OF_TIME, INTERRUPTED, SPENT };
 /* What belongs to one thread, on cache lines of its own. */
 typedef struct render_worker {
     SF_ALIGNED(sf_atomic_size) samples; /* traced so far */
+    uint64_t done, met;                 /* pixels of the picture, by its decisions */
     sf_rng stream;                      /* seeds = thread, shared */
     sf_batch batch;
 } render_worker;
@@ -103,6 +106,15 @@ static sf_camera_frame frame_camera(const sf_camera *camera, uint32_t width, uin
     return frame;
 }
 
+static size_t cell_count(const render *r) { return (size_t)r->cell_columns * r->cell_rows; }
+
+static uint64_t count_pixels(const render *r, const uint64_t *cells) {
+    uint64_t count = 0;
+    for (size_t i = 0; i < cell_count(r); ++i)
+        count += sf_count_bits((uint32_t)cells[i]) + sf_count_bits((uint32_t)(cells[i] >> 32));
+    return count;
+}
+
 /* ---- a round ---- */
 
 /* The even bits of m are x, the odd bits y: 16 pixels in a row are a 4 x 4 square. */
@@ -149,6 +161,7 @@ static void flush_batch(render *r, render_worker *worker) {
         add_block(r, batch->blocks + i, batch->statistics + i);
         samples += sf_count_bits(batch->blocks[i].active);
     }
+    if (r->film->aovs) sf_aov_add(r->film->aovs, batch);
     batch->block_count = 0;
     sf_atomic_fetch_add(&worker->samples, samples);
     if (r->deadline > 0 && sf_seconds_now() >= r->deadline) sf_atomic_store(&r->state, OUT_OF_TIME);
@@ -252,6 +265,18 @@ static void report(render *r, bool round_finished) {
 
 static void wake(void *user) { report(user, false); }
 
+static void report_round(render *r) {
+    sf_progress *p = &r->progress;
+    p->round = r->film->summary.rounds;
+    p->pixels_done = p->pixels_met = 0;
+    for (uint32_t i = 0; i < r->options.threads; ++i) {
+        p->pixels_done += r->workers[i].done;
+        p->pixels_met += r->workers[i].met;
+    }
+    p->tolerance = fmax(r->film->summary.tolerance, 0);
+    report(r, true);
+}
+
 /* ---- decisions ---- */
 
 static void look_at_pool(void *user, unsigned worker, size_t item) {
@@ -290,9 +315,29 @@ static void decide_cell(render *r, render_worker *worker, uint32_t cell) {
             r->open[cell] &= ~(UINT64_C(1) << m);
 }
 
+/* Whether the pixel is of the picture, not of the margin that was traced with it. */
+static bool counts(const sf_film *film, const sf_film_pixel *pixel) {
+    uint32_t i = (uint32_t)(pixel - film->pixels);
+    uint32_t x = i % film->width + film->x0 - film->crop_x0, y = i / film->width + film->y0 - film->crop_y0;
+    return x < film->crop_width && y < film->crop_height && sf_film_counts(film, x, y);
+}
+
+/* Decides, and counts the pixels of the picture that are done. */
+static void settle_cell(render *r, render_worker *worker, uint32_t cell) {
+    uint64_t before = r->active[cell];
+    decide_cell(r, worker, cell);
+    uint64_t done = before & ~r->open[cell];
+    for (uint32_t m = 0; done; ++m, done >>= 1) {
+        const sf_film_pixel *pixel = cell_pixel(r, cell, m);
+        if (!(done & 1u) || !counts(r->film, pixel)) continue;
+        ++worker->done;
+        worker->met += pixel->reason == SF_STOP_MET;
+    }
+}
+
 static void decide_tile(void *user, unsigned worker, size_t item) {
     render *r = user;
-    for_each_cell(r, worker, r->tiles[item], r->active, decide_cell);
+    for_each_cell(r, worker, r->tiles[item], r->active, settle_cell);
 }
 
 static void sum_row(void *user, unsigned worker, size_t item) {
@@ -343,15 +388,6 @@ static void list_tiles(render *r) {
     r->tile_count = 0;
     for (uint32_t tile = 0; tile < r->tile_columns * r->tile_rows; ++tile)
         if (tile_has(r, tile, r->active)) r->tiles[r->tile_count++] = tile;
-}
-
-static size_t cell_count(const render *r) { return (size_t)r->cell_columns * r->cell_rows; }
-
-static uint64_t count_pixels(const render *r, const uint64_t *cells) {
-    uint64_t count = 0;
-    for (size_t i = 0; i < cell_count(r); ++i)
-        count += sf_count_bits((uint32_t)cells[i]) + sf_count_bits((uint32_t)(cells[i] >> 32));
-    return count;
 }
 
 /* The least count and the largest half-width among a tile's open pixels beyond the target. */
@@ -476,12 +512,6 @@ static uint32_t round_end(const render *r) {
     return target < end ? target : end;
 }
 
-static void end_round(render *r, uint64_t region) {
-    r->progress.round = ++r->film->summary.rounds;
-    r->progress.pixels_done = (region - count_pixels(r, r->open)) * r->progress.pixels / region;
-    report(r, true);
-}
-
 /* Closes what is still open: time is up, a budget is spent, or the caller asked to stop. */
 static void close_all(render *r) {
     if (sf_atomic_load(&r->state) == RUNNING) sf_atomic_store(&r->state, SPENT);
@@ -492,7 +522,6 @@ static void close_all(render *r) {
 
 static void run_rounds(render *r) {
     sf_film_summary *summary = &r->film->summary;
-    uint64_t region = count_pixels(r, r->open);
     summary->tolerance = -1;
     r->to = r->options.start;
     r->target = -1;
@@ -504,7 +533,8 @@ static void run_rounds(render *r) {
             lap_ended = r->to == r->look || r->to == most_samples(r);
             if (lap_ended && sf_atomic_load(&r->state) == RUNNING) decide(r);
             r->from = r->to;
-            end_round(r, region);
+            ++summary->rounds;
+            report_round(r);
         } while (!lap_ended && sf_atomic_load(&r->state) == RUNNING);
     }
     close_all(r);
@@ -544,7 +574,9 @@ static sf_status lay_out_cells(render *r, sf_error *error) {
     for (uint32_t y = 0; y < r->cell_rows; ++y)
         for (uint32_t x = 0; x < r->cell_columns; ++x)
             r->open[(size_t)y * r->cell_columns + x] =
-                pixels_inside(film->width - x * SF_CELL_SIZE, film->height - y * SF_CELL_SIZE);
+                sf_mask_touches_cell(&r->options, film->x0 + x * SF_CELL_SIZE, film->y0 + y * SF_CELL_SIZE)
+                    ? pixels_inside(film->width - x * SF_CELL_SIZE, film->height - y * SF_CELL_SIZE)
+                    : 0;
     return SF_STATUS_OK;
 }
 
@@ -557,6 +589,7 @@ static sf_status hire_workers(render *r, sf_error *error) {
         uint64_t stream = r->options.seeds == SF_SEEDS_THREAD ? i : 0;
         sf_status status = sf_rng_init(&r->workers[i].stream, SF_RNG_XOSHIRO256PP, r->options.seed, stream, error);
         if (status) return status;
+        if (r->context.aovs & SF_AOVS_OF_HITS) r->workers[i].batch.hit_sums = r->film->aovs->hits + (size_t)i * SF_BLOCKS;
     }
     return sf_pool_create(r->options.threads, &r->pool, error);
 }
@@ -566,10 +599,11 @@ static sf_status prepare(render *r, sf_error *error) {
     const sf_render_options *o = &r->options;
     sf_status status = sf_coordinates_init(&r->context.coordinates, o->pattern, &scene->plan, o->spp, o->seed, error);
     if (!status) status = sf_film_create(o, &r->film, error);
+    r->context.aovs = o->aovs;
     if (!status) status = lay_out_cells(r, error);
     if (!status) status = hire_workers(r, error);
     if (status) return status;
-    uint64_t traced = (uint64_t)r->film->width * r->film->height;
+    uint64_t traced = count_pixels(r, r->open);
     if (o->samples && o->samples < traced)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "samples is %" PRIu64 "; at least one for each of %" PRIu64 " pixels is allowed",
                        o->samples, traced);
@@ -577,10 +611,10 @@ static sf_status prepare(render *r, sf_error *error) {
     r->context.filter = o->pixel_filter;
     r->context.seeds = o->seeds;
     r->context.isa = sf_isa_active();
-    r->z = sf_stop_factor(o);
+    r->z = r->film->factor = sf_stop_factor(o);
     r->deadline = o->seconds > 0 ? r->start + o->seconds : 0;
-    r->progress.pixels = (uint64_t)r->film->crop_width * r->film->crop_height;
-    r->progress.expected_samples = (uint64_t)o->spp * r->film->width * r->film->height;
+    r->progress.pixels = r->film->counted;
+    r->progress.expected_samples = o->spp * count_pixels(r, r->open);
     r->progress.time_limit = o->seconds;
     return SF_STATUS_OK;
 }

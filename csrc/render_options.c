@@ -4,7 +4,9 @@
 #include <inttypes.h>
 #include <math.h>
 
+#include "coordinates.h"
 #include "error.h"
+#include "mask.h"
 #include "platform.h"
 #include "render_options.h"
 
@@ -97,9 +99,24 @@ static sf_status check_choices(const sf_render_options *o, sf_error *error) {
     return SF_STATUS_OK;
 }
 
+static sf_status check_aovs(const sf_render_options *o, sf_error *error) {
+    if (o->aovs >> SF_AOV_COUNT)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "aovs is 0x%x; it must be a union of bits 0 to %d", o->aovs,
+                       SF_AOV_COUNT - 1);
+    bool halves = o->aovs >> SF_AOV_HALF_A & 1u || o->aovs >> SF_AOV_HALF_B & 1u;
+    if (halves && o->spp && o->start / SF_LANES == (o->start + o->spp - 1) / SF_LANES)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                       "aovs half_a and half_b take blocks of %d samples in turn, and spp is %u, in one block; it must be "
+                       "at least %d",
+                       SF_LANES, o->spp, SF_LANES + 1);
+    return SF_STATUS_OK;
+}
+
 sf_status sf_render_options_complete(sf_render_options *options, sf_error *error) {
     sf_status status = check_sizes(options, error);
     if (!status) status = check_budget(options, error);
     if (!status) status = check_choices(options, error);
+    if (!status) status = check_aovs(options, error);
+    if (!status) status = sf_mask_complete(options, error);
     return status;
 }

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "lanes.h"
 #include "sunfleck/mapping.h"
 
 #define SHADOW_BINS 64 /* 4 quarters of a cell x 4 x 4 cells of the light */
@@ -395,14 +396,6 @@ static void surface(sf_batch *b, uint32_t count) {
 
 /* ---- film ---- */
 
-/* The sum of 16 numbers, halved in a fixed order that vectorizes. */
-static inline double sum16(const double x[SF_LANES]) {
-    SF_ALIGNED(double) a[8];
-    SF_ROLLED
-    for (int l = 0; l < 8; ++l) a[l] = x[l] + x[l + 8];
-    return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]));
-}
-
 /* keep[l] = 1 where the sample was asked for and is finite, else 0. */
 static inline void choose_samples(const sf_batch *b, uint32_t first, uint32_t wanted, float keep[SF_LANES]) {
     SF_ROLLED
@@ -420,12 +413,12 @@ static void gather_block(const sf_batch *b, uint32_t block, sf_block_statistics 
     choose_samples(b, first, wanted, keep);
     SF_ROLLED
     for (int l = 0; l < SF_LANES; ++l) value[l] = (double)keep[l];
-    double count = sum16(value), inverse = count > 0 ? 1 / count : 0;
+    double count = sf_sum16(value), inverse = count > 0 ? 1 / count : 0;
     for (int c = 0; c < 3; ++c) {
         const float *radiance = b->radiance[c] + first;
         SF_ROLLED
         for (int l = 0; l < SF_LANES; ++l) value[l] = (double)(keep[l] > 0 ? radiance[l] : 0.0f);
-        double mean = out->moments.mean[c] = sum16(value) * inverse;
+        double mean = out->moments.mean[c] = sf_sum16(value) * inverse;
         SF_ROLLED
         for (int l = 0; l < SF_LANES; ++l) {
             double off = (double)keep[l] * (value[l] - mean);
@@ -434,8 +427,8 @@ static void gather_block(const sf_batch *b, uint32_t block, sf_block_statistics 
     }
     SF_ROLLED
     for (int l = 0; l < SF_LANES; ++l) value[l] = (double)(keep[l] * b->covered[first + (uint32_t)l]);
-    out->hits = (uint32_t)(int)sum16(value);
-    out->moments.m2 = sum16(squares);
+    out->hits = (uint32_t)(int)sf_sum16(value);
+    out->moments.m2 = sf_sum16(squares);
     out->moments.count = (uint64_t)(int)count;
     out->moments.nonfinite = (uint64_t)sf_count_bits(wanted) - out->moments.count;
 }

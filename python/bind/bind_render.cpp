@@ -3,11 +3,15 @@
 
 #include "sunfleck/render.h"
 
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "bind_scene.h"
 
@@ -58,6 +62,19 @@ nb::typed<nb::list, nb::typed<nb::tuple, nb::str, nb::any>> channels_of(nb::hand
 nb::typed<nb::object, nb::ndarray<nb::numpy, const float, nb::ndim<3>>> color_of(nb::handle_t<film_handle> self) {
     const sf_film *film = nb::cast<film_handle &>(self).film;
     return view<float>(self, film, sf_film_channel(film, 0), 3);
+}
+
+nb::typed<nb::dict, nb::str, nb::any> aovs_of(nb::handle_t<film_handle> self) {
+    const sf_film *film = nb::cast<film_handle &>(self).film;
+    nb::dict aovs;
+    for (int k = 0; k < SF_AOV_COUNT; ++k) {
+        sf_channel first;
+        int components = sf_film_aov(film, static_cast<sf_aov>(k), &first);
+        if (components)
+            aovs[sf_aov_name(static_cast<sf_aov>(k))] =
+                view<float>(self, film, first, components > 1 ? static_cast<size_t>(components) : 0);
+    }
+    return aovs;
 }
 
 nb::typed<nb::dict, nb::str, nb::str> attributes_of(const film_handle &self) {
@@ -140,11 +157,26 @@ sf_pattern find_pattern(const std::string &name) {
     return pattern;
 }
 
+// Rows of the full frame, one byte a pixel.
+using pixel_mask = nb::ndarray<const uint8_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
+void set_mask(sf_render_options &options, const pixel_mask &mask) {
+    if (mask.shape(0) != options.height || mask.shape(1) != options.width) {
+        std::string message = "mask has shape (" + std::to_string(mask.shape(0)) + ", " +
+                              std::to_string(mask.shape(1)) + "); it must be that of the full frame, (" +
+                              std::to_string(options.height) + ", " + std::to_string(options.width) + ")";
+        throw nb::value_error(message.c_str());
+    }
+    options.mask = mask.data();
+    options.mask_stride = mask.shape(1);
+}
+
 film_handle *render(const scene_handle &scene, uint32_t width, uint32_t height, std::array<uint32_t, 4> crop,
                     uint32_t spp, uint32_t start, double relative_tolerance, double absolute_tolerance, double confidence,
                     uint32_t min_spp, uint32_t max_spp, uint64_t samples, double seconds, const std::string &pattern,
                     const std::string &pixel_filter, const std::string &stop, const std::string &seeds, uint64_t seed,
-                    uint32_t threads, uint32_t tile_size, nb::object observer) {
+                    uint32_t threads, uint32_t tile_size, const std::vector<std::string> &aovs,
+                    std::optional<pixel_mask> mask, nb::object observer) {
     watcher watch{observer, false, nullptr};
     sf_render_options options = sf_render_options_default();
     options.width = width;
@@ -166,6 +198,8 @@ film_handle *render(const scene_handle &scene, uint32_t width, uint32_t height, 
     options.seed = seed;
     options.threads = threads;
     options.tile_size = tile_size;
+    for (const std::string &name : aovs) options.aovs |= 1u << find("aovs", name, sf_aov_name);
+    if (mask) set_mask(options, *mask);
     options.progress = on_progress;
     options.progress_user = &watch;
 
@@ -187,6 +221,8 @@ void bind_render(nb::module_ &m) {
         .def_ro("expected_samples", &sf_progress::expected_samples)
         .def_ro("seconds", &sf_progress::seconds)
         .def_ro("time_limit", &sf_progress::time_limit)
+        .def_ro("pixels_met", &sf_progress::pixels_met)
+        .def_ro("tolerance", &sf_progress::tolerance)
         .def_prop_ro("round_finished", [](const sf_progress &p) { return p.round_finished != 0; });
 
     nb::class_<film_handle>(m, "Film")
@@ -195,8 +231,15 @@ void bind_render(nb::module_ &m) {
         .def_ro("signalled", &film_handle::signalled)
         .def("channels", &channels_of)
         .def("color", &color_of)
+        .def("aovs", &aovs_of)
         .def("attributes", &attributes_of)
         .def("summary", &summary_of);
+
+    m.def("aov_names", [] {
+        nb::typed<nb::list, nb::str> names;
+        for (int k = 0; k < SF_AOV_COUNT; ++k) names.append(sf_aov_name(static_cast<sf_aov>(k)));
+        return names;
+    });
 
     m.def("stop_reasons", [] {
         nb::typed<nb::list, nb::str> names;
@@ -208,5 +251,5 @@ void bind_render(nb::module_ &m) {
     m.def("render", &render, nb::rv_policy::take_ownership, "scene"_a, nb::kw_only(), "width"_a, "height"_a, "crop"_a,
           "spp"_a, "start"_a, "relative_tolerance"_a, "absolute_tolerance"_a, "confidence"_a, "min_spp"_a, "max_spp"_a,
           "samples"_a, "seconds"_a, "pattern"_a, "pixel_filter"_a, "stop"_a, "seeds"_a, "seed"_a, "threads"_a, "tile_size"_a,
-          "progress"_a.none());
+          "aovs"_a, "mask"_a.none(), "progress"_a.none());
 }

@@ -33,7 +33,7 @@ from sunfleck.integrate import Integral, IntegralLook, integrate
 from sunfleck.load import load
 from sunfleck.mapping import MAPPINGS
 from sunfleck.points import PATTERNS, SCRAMBLES, points, valid_counts
-from sunfleck.render import STOP_REASONS, Image, Progress, Summary, render
+from sunfleck.render import AOVS, STOP_REASONS, Image, Progress, Summary, render
 from sunfleck.rng import RNGS, Rng
 from sunfleck.scene import Camera, Mesh, Plan, PlanDimensions, Scene, SceneInfo
 from sunfleck.tolerance import Tolerance
@@ -54,6 +54,7 @@ else:
 __version__ = _version()
 
 __all__ = [
+    "AOVS",
     "MAPPINGS",
     "PATTERNS",
     "RNGS",

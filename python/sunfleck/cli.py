@@ -42,8 +42,8 @@ examples:
   sunfleck render defocus --seconds 10 -o out.exr
       as good as ten seconds allow
 
-An .exr holds R G B A, samples, half_width and stop_reason of each pixel, and every option as
-metadata; a .png holds the colours only, as sRGB. Ctrl-C saves what there is and exits with 130.
+An .exr holds R G B A, samples, half_width and stop_reason of each pixel, what --aov asks for,
+and every option as metadata; a .png holds the colours only, as sRGB. Ctrl-C saves what there is and exits with 130.
 """
 
 _POINTS_EXAMPLES = """\
@@ -104,6 +104,7 @@ def _add_render(commands: argparse._SubParsersAction[_Parser]) -> None:
     work = parser.add_argument_group("work")
     add = work.add_argument
     add("--threads", type=int, metavar="N", help="default: one for each processor")
+    add("--aov", default="", metavar="NAMES", help=f"also {', '.join(sf.AOVS)}: any of these, with commas between")
     add("--crop", type=int, nargs=4, metavar=("X0", "Y0", "X1", "Y1"), help="half open, in pixels of the full frame")
 
 
@@ -183,6 +184,7 @@ def _render(given: argparse.Namespace) -> int:
         seed=given.seed,
         threads=given.threads,
         crop=given.crop,
+        aovs=given.aov,
         progress=sys.stderr.isatty(),
     )
     for output in outputs:

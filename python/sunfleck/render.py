@@ -5,12 +5,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from sunfleck import _core
 from sunfleck._arguments import integer, number, text
@@ -20,36 +21,41 @@ from sunfleck.image import write_channels, write_false_color
 from sunfleck.scene import Scene
 from sunfleck.tolerance import Tolerance
 
-__all__ = ["STOP_REASONS", "Image", "Progress", "Summary", "render"]
+__all__ = ["AOVS", "STOP_REASONS", "Image", "Progress", "Summary", "render"]
 
 STOP_REASONS: tuple[str, ...] = tuple(_core.stop_reasons())
 """The names of the numbers in `Image.stop_reason`."""
 
+AOVS: tuple[str, ...] = tuple(_core.aov_names())
+"""What an image can hold beside the colours; see `render`."""
+
 
 @dataclass(frozen=True)
 class Summary:
-    """What a render came to, over the image's pixels.
+    """What a render came to, over the image's pixels; those that a mask leaves out count nowhere.
 
     Attributes
     ----------
     pixels, samples : int
         Pixels, and the samples that they took.
     traced_samples : int
-        With those of the crop's margin.
+        With those of the crop's and the mask's margin.
     reasons : dict of str to int
-        Pixels by stop reason.
+        Pixels by stop reason. They add up to ``pixels``.
     nonfinite_samples : int
         Samples that were NaN or infinite: dropped, never averaged in.
     level : float
         Mean of (R+G+B)/3 that a relative tolerance refers to.
     tolerance : float
         In linear radiance; 0 where none was asked for.
+    relative : bool
+        Whether that tolerance was asked for as a share of the level.
     confidence : float
         Of the half-widths.
     worst_half_width, mean_half_width : float
         In linear radiance.
     worst_pixel : tuple of 2 ints
-        (x, y) of the worst half-width, in the image.
+        (x, y) of the worst half-width, in pixels of the full frame.
     seconds : float
         That the render took.
     threads, rounds : int
@@ -70,16 +76,40 @@ class Summary:
     seconds: float
     threads: int
     rounds: int
+    relative: bool = False
 
     @property
     def share_met(self) -> float:
         """Share of pixels that met the tolerance, in [0, 1]."""
         return self.reasons["met"] / self.pixels
 
+    @property
+    def line(self) -> str:
+        """The render in one line: how many pixels met what was asked for, and the worst one.
+
+        Where the tolerance was a share of the level, so is the worst half-width; else both are
+        linear radiance.
+        """
+        unit = self.level if self.relative else 1.0
+        x, y = self.worst_pixel
+        worst = f"worst {self.worst_half_width / unit:.3g} at ({x}, {y})"
+        confidence = f"at {100 * self.confidence:g} %"
+        early = "".join(f", {_percent(self._share(r))} {r}" for r in ("out of time", "interrupted") if self.reasons[r])
+        if self.tolerance > 0:
+            met = f"{_percent(self.share_met)} of pixels met {self.tolerance / unit:.3g} {confidence}"
+            return f"{met}{early}; {worst}"
+        early = early.replace("100 % ", "")
+        samples = f"{self.samples / self.pixels:.4g} samples a pixel{early}"
+        return f"{samples}; half-width {confidence}: mean {self.mean_half_width:.3g}, {worst}"
+
+    def _share(self, reason: str) -> float:
+        return self.reasons[reason] / self.pixels
+
     def __str__(self) -> str:
         counts = ", ".join(f"{count} {reason}" for reason, count in self.reasons.items() if count)
         rate = self.samples / self.seconds / 1e6 if self.seconds > 0 else 0.0
         lines = [
+            self.line,
             f"pixels      {self.pixels}: {counts}",
             f"samples     {self.samples}, {self.samples / self.pixels:.1f} a pixel",
             f"time        {self.seconds:.2f} s on {self.threads} threads: {rate:.1f} million samples a second",
@@ -87,10 +117,16 @@ class Summary:
             f"{self.worst_pixel}, {100 * self.confidence:g} % confidence",
         ]
         if self.tolerance > 0:
-            lines.insert(1, f"tolerance   {self.tolerance:.3g} (level {self.level:.3g}): {self.share_met:.2%} met it")
+            share = f"{self.tolerance / self.level:.3g} of the level {self.level:.3g}: " if self.relative else ""
+            lines.insert(1, f"tolerance   {share}{self.tolerance:.3g} in linear radiance")
         if self.nonfinite_samples:
             lines.append(f"dropped     {self.nonfinite_samples} samples that were not finite")
         return "\n".join(lines)
+
+
+def _percent(share: float) -> str:
+    """Rounded down to a tenth, so that only a whole is called 100 %."""
+    return f"{math.floor(1000 * share) / 10:.1f} %" if share < 1 else "100 %"
 
 
 class Image:
@@ -108,8 +144,11 @@ class Image:
         Bounds the error of (R+G+B)/3 at the confidence asked for; infinite below 2 samples.
     stop_reason : ndarray of uint8, shape (h, w)
         Why the pixel stopped: an index into `sunfleck.STOP_REASONS`.
+    aovs : dict of str to ndarray of float32, shape (h, w, 3) or (h, w)
+        Those that were asked for, by name; see `render`.
     channels : list of (str, ndarray)
-        All of these as they are written: R G B A samples half_width stop_reason.
+        All of these as they are written: R G B A samples half_width stop_reason, then the AOVs'
+        (albedo.R …, normal.X …, Z, variance, half_a.R …, half_b.R …).
     metadata : dict of str to str
         Every option as it was used, the seed, version, instruction set, and what came of it.
     interrupted : bool
@@ -131,6 +170,7 @@ class Image:
         self.samples: NDArray[np.uint32] = named["samples"]
         self.half_width: NDArray[np.float32] = named["half_width"]
         self.stop_reason: NDArray[np.uint8] = named["stop_reason"]
+        self.aovs: dict[str, NDArray[np.float32]] = film.aovs()
         self.metadata: dict[str, str] = film.attributes()
 
     @property
@@ -138,14 +178,16 @@ class Image:
         return self._film.signalled or self.summary().reasons["interrupted"] > 0
 
     def summary(self) -> Summary:
-        """What the render came to; printed, it is a small table."""
-        return Summary(**self._film.summary())
+        """What the render came to; printed, it is a line (`Summary.line`) and a small table."""
+        counts = self._film.summary()
+        share = float(self.metadata["relative_tolerance"]) * counts["level"]
+        return Summary(**counts, relative=share > 0 and share >= float(self.metadata["absolute_tolerance"]))
 
     def save(self, path: FilePath) -> None:
         """Writes the picture, by the path's ending.
 
-        ``.exr``: one part, float32, linear: R G B A samples half_width stop_reason, and the
-        metadata as "sunfleck:NAME". ``.png``: 8-bit sRGB, values beyond [0, 1] clipped.
+        ``.exr``: one part, float32, linear: every channel, and the metadata as "sunfleck:NAME".
+        ``.png``: 8-bit sRGB, values beyond [0, 1] clipped.
 
         The file is written beside and renamed: a failure leaves whatever was there.
 
@@ -226,6 +268,28 @@ def _crop(value: Sequence[int] | None) -> tuple[int, int, int, int]:
     return crop[0], crop[1], crop[2], crop[3]
 
 
+def _aovs(value: Sequence[str]) -> list[str]:
+    if isinstance(value, str):
+        value = [name.strip() for name in value.split(",") if name.strip()]
+    try:
+        names = list(value)
+    except TypeError:
+        raise TypeError(f"aovs is {value!r}; give names of {', '.join(AOVS)}") from None
+    return [text("aovs", name) for name in names]
+
+
+def _mask(value: ArrayLike | None) -> NDArray[np.uint8] | None:
+    """As bytes, without a copy where it can be."""
+    if value is None:
+        return None
+    mask = np.asarray(value)
+    if mask.dtype not in (np.bool_, np.uint8):
+        raise TypeError(f"mask has dtype {mask.dtype}; give bool or uint8")
+    if mask.ndim != 2:
+        raise ValueError(f"mask has shape {mask.shape}; give (height, width)")
+    return np.ascontiguousarray(mask).view(np.uint8)
+
+
 class _Bar:
     """A tqdm bar: samples of a fixed count, or pixels that are done."""
 
@@ -243,6 +307,8 @@ class _Bar:
         spent = f"{progress.samples / progress.pixels:.0f} samples a pixel"
         if progress.time_limit:
             spent += f", {progress.seconds:.0f} of {progress.time_limit:g} s"
+        if progress.tolerance > 0:
+            spent = f"{_percent(progress.pixels_met / progress.pixels)} met, {spent}"
         self._bar.set_postfix_str(spent, refresh=False)
         self._bar.update(progress.pixels_done - self._bar.n)
 
@@ -271,6 +337,8 @@ def render(
     threads: int | None = None,
     tile_size: int = 16,
     crop: Sequence[int] | None = None,
+    aovs: Sequence[str] = (),
+    mask: ArrayLike | None = None,
     progress: bool | Callable[[Progress], object] | None = None,
 ) -> Image:
     """Renders a scene to a stated accuracy, a fixed count of samples, or a time.
@@ -317,6 +385,17 @@ def render(
         Pixels a side that a thread takes at a time: a multiple of 8, 8 to 1,024.
     crop : (x0, y0, x1, y1), optional
         Half open, in pixels of the full frame; the image has the crop's size.
+    aovs : sequence of str, or str with commas between
+        What `Image.aovs` is to hold, of `sunfleck.AOVS`. Of the camera rays' first hits, averaged
+        over the pixel's samples: "albedo" (a light's own, without its emission), "normal" (unit
+        normals, facing the viewer) — both 0 in samples that hit nothing — and "depth" (along the
+        camera's axis, over the samples that hit; infinite where none did). "variance": of the
+        pixel's mean of (R+G+B)/3, as the half-width has it. "half_a", "half_b": the means over the
+        even and the odd blocks of 16 samples; give at least 32 samples for both.
+    mask : array_like of bool or uint8, shape (height, width), optional
+        Which pixels of the full frame to render, whatever the crop: those not 0. The others have
+        no samples, an infinite half-width and the stop reason "masked". Costs whole cells of 8 x 8
+        pixels, as a crop does.
     progress : bool or callable, optional
         True: a bar on stderr. A callable gets a `Progress` after every round and may return
         False to stop.
@@ -337,7 +416,11 @@ def render(
     Notes
     -----
     With ``seeds="pixel"`` the same scene, options and seed give the same picture bit for bit,
-    for any ``threads`` and ``tile_size``, on one instruction set. Releases the GIL. Ctrl-C
+    for any ``threads`` and ``tile_size``, on one instruction set. The pixels of
+    a crop or a mask are those of the full frame bit for bit with ``spp``, and with an absolute
+    tolerance under the rule "standard-error"; a relative tolerance has the mean of the pixels of
+    the picture for its level.
+    Releases the GIL. Ctrl-C
     stops the render and returns the partial picture, its unfinished pixels marked interrupted.
 
     Examples
@@ -374,6 +457,8 @@ def render(
         "seed": integer("seed", seed),
         "threads": _count("threads", threads),
         "tile_size": integer("tile_size", tile_size, bits=32),
+        "aovs": _aovs(aovs),
+        "mask": _mask(mask),
     }
     if callable(progress):
         tell = progress

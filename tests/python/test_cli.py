@@ -50,11 +50,21 @@ def test_render_is_the_library_s(tmp_path: Path) -> None:
     assert np.array_equal(pixels_of(tmp_path / "two.exr"), pixels)
 
 
+def test_render_with_aovs(tmp_path: Path) -> None:
+    result = run("render", "--width", "16", "--height", "16", "--spp", "32", "--aov", "albedo,half_b", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    source = oiio.ImageInput.open(str(tmp_path / "penumbra.exr"))
+    assert source
+    names = source.spec().channelnames
+    assert {"albedo.R", "albedo.G", "albedo.B", "half_b.R", "half_b.G", "half_b.B"} <= set(names)
+    assert "Z" not in names
+
+
 def test_render_s_defaults(tmp_path: Path) -> None:
     result = run("render", "--width", "16", "--height", "16", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     assert [path.name for path in tmp_path.iterdir()] == ["penumbra.exr"]
-    assert "met it" in result.stdout
+    assert "% of pixels met 0.01 at 95 %; worst " in result.stdout.splitlines()[0]
 
 
 def test_render_of_a_file_says_what_it_was_given(tmp_path: Path) -> None:
@@ -77,6 +87,7 @@ def test_errors_are_one_line_and_exit_2(tmp_path: Path) -> None:
     assert_refused(run("render", "--width", "0"), "width is 0")
     assert_refused(run("render", "--crop", "1", "2", "3"), "--crop")
     assert_refused(run("render", "--pattern", "sobel"), "sobel", "sobol")
+    assert_refused(run("render", "--aov", "albedo,motion"), "motion", "albedo, normal")
     assert_refused(run("paint"), "paint", "render")
     assert_refused(run(), "COMMAND")
     assert_refused(run("points", "sobel"), "sobel", "sobol")

@@ -43,6 +43,19 @@ def test_an_exr_holds_every_channel_and_attribute(picture: sf.Image, tmp_path: P
     assert len(list(tmp_path.iterdir())) == 1
 
 
+def test_an_exr_holds_the_aovs_under_their_usual_names(penumbra: sf.Scene, tmp_path: Path) -> None:
+    image = sf.render(penumbra, 33, 20, spp=32, aovs=sf.AOVS)
+    image.save(tmp_path / "out.exr")
+    spec, pixels = read(tmp_path / "out.exr")
+    for name, layer, parts in (("albedo", "albedo", "RGB"), ("normal", "normal", "XYZ"), ("half_b", "half_b", "RGB")):
+        for k, part in enumerate(parts):
+            assert np.array_equal(pixels[..., spec.channelindex(f"{layer}.{part}")], image.aovs[name][..., k])
+    assert np.array_equal(pixels[..., spec.channelindex("Z")], image.aovs["depth"])
+    assert np.array_equal(pixels[..., spec.channelindex("variance")], image.aovs["variance"])
+    image.save(tmp_path / "out.png")
+    assert np.array_equal(read(tmp_path / "out.png")[1], encode_srgb(image.color))
+
+
 def test_a_png_is_srgb(picture: sf.Image, tmp_path: Path) -> None:
     path = tmp_path / "out.PNG"
     picture.save(path)

@@ -110,8 +110,140 @@ def test_summary_adds_up(picture: sf.Image) -> None:
     assert summary.mean_half_width == pytest.approx(picture.half_width.mean(), rel=1e-5)
     assert summary.tolerance == pytest.approx(0.05 * summary.level)
     assert summary.nonfinite_samples == 0
-    assert "met it" in str(summary)
+    assert str(summary).startswith(f"{summary.line}\n")
     assert f"{summary.samples}" in str(summary)
+
+
+COUNTS: dict[str, Any] = {
+    "pixels": 1000,
+    "samples": 64000,
+    "traced_samples": 64000,
+    "nonfinite_samples": 0,
+    "level": 0.5,
+    "tolerance": 0.005,
+    "confidence": 0.95,
+    "worst_half_width": 0.015,
+    "worst_pixel": (12, 200),
+    "mean_half_width": 0.002,
+    "seconds": 1.0,
+    "threads": 2,
+    "rounds": 3,
+}
+
+
+@pytest.mark.parametrize(
+    ("reasons", "options", "line"),
+    [
+        (
+            {"met": 987, "max samples": 13},
+            {"relative": True},
+            "98.7 % of pixels met 0.01 at 95 %; worst 0.03 at (12, 200)",
+        ),
+        ({"met": 1000}, {}, "100 % of pixels met 0.005 at 95 %; worst 0.015 at (12, 200)"),
+        (
+            {"met": 999_999, "max samples": 1},
+            {"pixels": 1_000_000, "confidence": 0.999},
+            "99.9 % of pixels met 0.005 at 99.9 %; worst 0.015 at (12, 200)",
+        ),
+        (
+            {"met": 500, "out of time": 499, "suspicious": 1},
+            {"relative": True},
+            "50.0 % of pixels met 0.01 at 95 %, 49.9 % out of time; worst 0.03 at (12, 200)",
+        ),
+        (
+            {"interrupted": 1000},
+            {"relative": True},
+            "0.0 % of pixels met 0.01 at 95 %, 100 % interrupted; worst 0.03 at (12, 200)",
+        ),
+        (
+            {"fixed": 1000},
+            {"tolerance": 0.0},
+            "64 samples a pixel; half-width at 95 %: mean 0.002, worst 0.015 at (12, 200)",
+        ),
+        (
+            {"out of time": 1000},
+            {"tolerance": 0.0, "samples": 64_512},
+            "64.51 samples a pixel, out of time; half-width at 95 %: mean 0.002, worst 0.015 at (12, 200)",
+        ),
+    ],
+)
+def test_a_summary_s_line_says_what_was_met(reasons: dict[str, int], options: dict[str, Any], line: str) -> None:
+    every = dict.fromkeys(sf.STOP_REASONS, 0) | reasons
+    summary = sf.Summary(**(COUNTS | {"reasons": every} | options))
+    assert summary.line == line
+    assert str(summary).splitlines()[0] == line
+
+
+def test_a_line_has_the_tolerance_as_it_was_given(penumbra: sf.Scene) -> None:
+    assert " met 0.07 at 90 %; " in sf.render(penumbra, 24, 24, tolerance=0.07, confidence=0.9).summary().line
+    both = sf.Tolerance(absolute=0.025, relative=0.01)
+    assert " met 0.025 at 95 %; " in sf.render(penumbra, 24, 24, tolerance=both).summary().line
+
+
+# ---- AOVs and masks ----
+
+
+def test_aovs_are_views_by_name(cornell: sf.Scene) -> None:
+    image = sf.render(cornell, 40, 32, spp=32, aovs=sf.AOVS)
+    assert sf.AOVS == ("albedo", "normal", "depth", "variance", "half_a", "half_b")
+    assert tuple(image.aovs) == sf.AOVS
+    channels = dict(image.channels)
+    assert list(channels)[7:] == [
+        *("albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z", "Z", "variance"),
+        *("half_a.R", "half_a.G", "half_a.B", "half_b.R", "half_b.G", "half_b.B"),
+    ]
+    for name, array in image.aovs.items():
+        assert array.dtype == np.float32
+        assert array.shape == ((32, 40) if name in ("depth", "variance") else (32, 40, 3))
+        assert not array.flags.writeable
+    assert np.array_equal(channels["normal.Z"], image.aovs["normal"][..., 2])
+    assert np.shares_memory(channels["Z"], image.aovs["depth"])
+    # Equal halves: their mean is the picture, to the rounding of three floats.
+    mean = (image.aovs["half_a"] + image.aovs["half_b"]) / 2
+    assert np.allclose(mean, image.color, rtol=3 * 2**-24, atol=0)
+
+
+def test_cornell_s_aovs_are_what_its_meshes_say(cornell: sf.Scene) -> None:
+    image = sf.render(cornell, 64, 64, spp=16, aovs="albedo, normal,depth")
+    albedo, normal, depth = (image.aovs[name] for name in ("albedo", "normal", "depth"))
+    colors = np.unique([mesh.albedo for mesh in cornell.meshes], axis=0)
+    distance = np.abs(albedo[:, :, None, :] - colors).max(axis=-1).min(axis=-1)
+    assert (distance < 1e-6).mean() > 0.8  # all but the borders between surfaces
+    assert np.linalg.norm(normal, axis=-1).max() <= 1 + 1e-6
+    camera = cornell.camera
+    forward = np.subtract(camera.target, camera.position) / np.linalg.norm(np.subtract(camera.target, camera.position))
+    hit = np.isfinite(depth)
+    assert hit.any()
+    # Visible faces look towards the viewer: against the rays, which are within 30 degrees of the axis.
+    assert (normal[hit] @ forward < 0.5).all()
+    reach = [(mesh.vertices - camera.position) @ forward for mesh in cornell.meshes]
+    near, far = min(r.min() for r in reach), max(r.max() for r in reach)
+    assert near - 1e-4 <= depth[hit].min() <= depth[hit].max() <= far + 1e-4
+
+
+def test_a_mask_renders_its_pixels_only_and_alike(cornell: sf.Scene) -> None:
+    y, x = np.mgrid[:48, :64]
+    mask = (x - 40) ** 2 + (y - 20) ** 2 < 100
+    full = sf.render(cornell, 64, 48, spp=8, aovs=("albedo", "depth"))
+    for given in (mask, mask.astype(np.uint8) * 7, np.asfortranarray(mask), np.repeat(mask, 2, axis=1)[:, ::2]):
+        image = sf.render(cornell, 64, 48, spp=8, aovs=("albedo", "depth"), mask=given)
+        for (name, ours), (_, theirs) in zip(image.channels, full.channels, strict=True):
+            assert np.array_equal(ours[mask], theirs[mask]), name
+        assert (image.samples == np.where(mask, 8, 0)).all()
+        assert np.isinf(image.half_width[~mask]).all()
+        assert (image.stop_reason[~mask] == sf.STOP_REASONS.index("masked")).all()
+        assert not image.color[~mask].any()
+    summary = image.summary()
+    assert summary.pixels == mask.sum() == summary.reasons["fixed"]
+    assert image.metadata["mask"].startswith(f"{mask.sum()} pixels")
+    assert (image.metadata["aovs"], full.metadata["mask"]) == ("albedo,depth", "none")
+
+
+def test_a_mask_and_a_crop_are_both_in_pixels_of_the_frame(cornell: sf.Scene) -> None:
+    mask = np.zeros((48, 64), bool)
+    mask[10:20, 30:33] = True
+    image = sf.render(cornell, 64, 48, spp=8, mask=mask, crop=(25, 5, 35, 15))
+    assert np.array_equal(image.samples > 0, mask[5:15, 25:35])
 
 
 # ---- accuracy and budgets ----
@@ -318,6 +450,7 @@ def test_a_bar_is_drawn_on_stderr(penumbra: sf.Scene, capfd: pytest.CaptureFixtu
     out, err = capfd.readouterr()
     assert out == ""
     assert "samples a pixel" in err
+    assert "% met, " in err
     assert "sample/s" in err
 
 
@@ -404,6 +537,14 @@ def test_ctrl_c_returns_the_partial_picture_within_half_a_second(size: int, opti
         ({"crop": (0, 0, 8)}, ValueError, "crop"),
         ({"crop": (-1, 0, 8, 8)}, ValueError, "crop x0 is -1"),
         ({"crop": 5}, ValueError, "crop"),
+        ({"aovs": ("albedo", "motion")}, ValueError, "motion.*albedo, normal, depth, variance, half_a, half_b"),
+        ({"aovs": 3}, TypeError, "aovs is 3"),
+        ({"aovs": (3,)}, TypeError, "aovs is 3"),
+        ({"aovs": "half_a", "spp": 16}, ValueError, "half_a.*spp is 16"),
+        ({"mask": np.ones((16, 17), bool)}, ValueError, r"mask has shape \(16, 17\).*\(16, 16\)"),
+        ({"mask": np.ones(256, bool)}, ValueError, "mask has shape"),
+        ({"mask": np.ones((16, 16))}, TypeError, "mask has dtype float64"),
+        ({"mask": np.zeros((16, 16), bool)}, ValueError, "mask leaves no pixel"),
         ({"progress": 3}, TypeError, "progress"),
         ({"scene": None}, TypeError, "scene"),
     ],

@@ -63,26 +63,50 @@ typedef enum sf_stop_reason {
     SF_STOP_OUT_OF_TIME,  /* the time limit came first */
     SF_STOP_SUSPICIOUS,   /* samples that were not finite were dropped */
     SF_STOP_INTERRUPTED,  /* the caller asked to stop */
+    SF_STOP_MASKED,       /* the mask leaves the pixel out */
     SF_STOP_REASON_COUNT
 } sf_stop_reason;
 
-/* The names of the four enumerations, "box", "standard-error", "pixel", "met", …; NULL for a
+/* The names of these enumerations, "box", "standard-error", "pixel", "met", …; NULL for a
  * value beyond the last, so that they can be listed. */
 const char *sf_pixel_filter_name(sf_pixel_filter filter);
 const char *sf_stop_rule_name(sf_stop_rule rule);
 const char *sf_seed_policy_name(sf_seed_policy policy);
 const char *sf_stop_reason_name(sf_stop_reason reason);
 
+/* What a film can hold beside the colours, where it is asked for: arbitrary output variables.
+ *
+ * Albedo, normal and depth are of the camera rays' first hits, averaged over every sample of the
+ * pixel, also those whose radiance was dropped; a sample that hit nothing has albedo and normal 0,
+ * and no depth. Values of the surface alone: a light's albedo is its mesh's, its emission does
+ * not count. The channels' names are those that EXR readers know. */
+typedef enum sf_aov {
+    SF_AOV_ALBEDO = 0, /* albedo.R .G .B, in [0, 1] */
+    SF_AOV_NORMAL,     /* normal.X .Y .Z: unit normals in the scene's axes, on the side that is seen;
+                          their mean is shorter where they differ */
+    SF_AOV_DEPTH,      /* Z: distance along the camera's axis (not along the ray), the mean over the
+                          samples that hit; infinity where none did */
+    SF_AOV_VARIANCE,   /* variance: of the pixel's mean of (R+G+B)/3, as half_width has it; infinity
+                          below 2 samples */
+    SF_AOV_HALF_A,     /* half_a.R .G .B: mean radiance of samples 0-15, 32-47, 64-79, … */
+    SF_AOV_HALF_B,     /* half_b.R .G .B: of the others; 0 where there were none yet. The two halves
+                          have the mean as their mean, weighted by their counts */
+    SF_AOV_COUNT
+} sf_aov;
+const char *sf_aov_name(sf_aov aov); /* "albedo", …; NULL beyond the last */
+
 /* How far a render is: given to the progress callback. */
 typedef struct sf_progress {
     uint32_t round;           /* rounds finished */
     uint64_t samples;         /* paths traced so far */
-    uint64_t pixels;          /* pixels of the crop */
+    uint64_t pixels;          /* pixels of the crop that the mask leaves */
     uint64_t pixels_done;     /* of these, stopped */
     uint64_t expected_samples; /* samples where the count is fixed, else 0 */
     double seconds;           /* since the start */
     double time_limit;        /* the seconds option, 0 where there is none */
     int round_finished;       /* 1 at a round's end, 0 for the calls in between */
+    uint64_t pixels_met;      /* of those done, stopped because they met the tolerance */
+    double tolerance;         /* in linear radiance; 0 until it is known, or where none was asked */
 } sf_progress;
 
 /* Called from the thread that called sf_render, at every round's end and at least every 50 ms;
@@ -120,6 +144,19 @@ typedef struct sf_render_options {
     uint32_t threads;        /* 1 .. SF_MAX_THREADS; 0: one for each processor (default) */
     uint32_t tile_size;      /* pixels a side of what a thread takes at a time, a multiple of 8,
                                 8 .. 1024; default 16. Changes no bit of the film */
+    uint32_t aovs;           /* bit k asks for sf_aov k: 1u << SF_AOV_DEPTH | …; default 0. A render
+                                that asks for none neither keeps nor computes any */
+    const uint8_t *mask;     /* which pixels to render, those not 0: height rows of width bytes, in
+                                pixels of the full frame whatever the crop; NULL: all (default).
+                                Read before the first round only. The others have no samples,
+                                half-width infinity and stop reason masked. Cells that the mask
+                                touches are traced whole, as a crop's are, so that its pixels are
+                                the full frame's, bit for bit, at fixed spp (and adaptively with an
+                                absolute tolerance and a rule that looks at each pixel by itself;
+                                the level of a relative one is of the mask's pixels). A mask of
+                                scattered pixels may cost up to 64 times as many as it has. One
+                                that leaves no pixel of the crop is refused */
+    size_t mask_stride;      /* bytes from row to row, >= width; 0: width (default) */
     sf_progress_fn progress; /* default NULL */
     void *progress_user;
 } sf_render_options;
@@ -144,7 +181,8 @@ void sf_film_destroy(sf_film *film);
 typedef enum sf_channel_type { SF_CHANNEL_FLOAT32 = 0, SF_CHANNEL_UINT32, SF_CHANNEL_UINT8 } sf_channel_type;
 
 typedef struct sf_channel {
-    const char *name;     /* R G B A samples half_width stop_reason, in this order */
+    const char *name;     /* R G B A samples half_width stop_reason, in this order, then those of
+                             the AOVs asked for, in the order of sf_aov */
     sf_channel_type type;
     const void *data;     /* of pixel (0, 0); lives as long as the film */
     size_t pixel_stride;  /* bytes */
@@ -161,6 +199,10 @@ uint32_t sf_film_height(const sf_film *film);
 size_t sf_film_channel_count(const sf_film *film);
 sf_channel sf_film_channel(const sf_film *film, size_t index);
 
+/* The first channel of an AOV, and how many it has; they interleave, as R, G, B do. 0, and *first
+ * as it was, for one that was not asked for. */
+int sf_film_aov(const sf_film *film, sf_aov aov, sf_channel *first);
+
 /* One attribute: every option as it was used (chosen defaults filled in), the seed, version,
  * instruction set, scene hash, and what came of it. */
 typedef struct sf_attribute {
@@ -170,18 +212,18 @@ typedef struct sf_attribute {
 size_t sf_film_attribute_count(const sf_film *film);
 sf_attribute sf_film_attribute(const sf_film *film, size_t index);
 
-/* What a render came to, over the film's pixels. */
+/* What a render came to, over the film's pixels; those that a mask leaves out count nowhere. */
 typedef struct sf_film_summary {
     uint64_t pixels;
     uint64_t samples;                       /* in the film's pixels */
-    uint64_t traced_samples;                /* with those of the crop's margin */
+    uint64_t traced_samples;                /* with those of the crop's and the mask's margin */
     uint64_t reasons[SF_STOP_REASON_COUNT]; /* pixels by stop reason */
     uint64_t nonfinite_samples;             /* dropped, never averaged in */
     double level;                           /* mean of (R+G+B)/3 that a relative tolerance refers to */
     double tolerance;                       /* in linear radiance; 0 where none was asked */
     double confidence;
     double worst_half_width;                /* the largest, and where */
-    uint32_t worst_x, worst_y;
+    uint32_t worst_x, worst_y;              /* in pixels of the full frame */
     double mean_half_width;
     double seconds;                         /* of the render call */
     uint32_t threads, rounds;
