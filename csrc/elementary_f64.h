@@ -110,4 +110,12 @@ static inline double sf_expm1_f64(double x) {
     return (power - 1.0) + power * p;
 }
 
+static inline double sf_cbrt_rough_f64(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, 8);
+    bits = (uint64_t)((uint32_t)(bits >> 32) / 3 + 0x2a9f7893u) << 32;
+    memcpy(&x, &bits, 8);
+    return x;
+}
+
 #endif

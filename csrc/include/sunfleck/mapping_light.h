@@ -1,0 +1,270 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* mapping, the lights seen from a point: triangle and rectangle by solid angle. Included by
+ * mapping.h, whose comment holds what the triples have in common.
+ *
+ * The triples take the vertices and the origin. A renderer's loop prepares the shape once for
+ * each origin (`_init`) and then draws and finds (`_draw`, `_find`) without branches, so that it
+ * vectorizes over origins as well as over samples.
+ *
+ * `share` is the solid angle over 4 pi, which is what sf_angle_2pi gives of half of it. pdf per
+ * solid angle is 1 / (4 pi share): infinity if the origin lies in the shape's plane but not in the
+ * shape, or the shape has no area; samples are then finite directions along it. From a point of
+ * the shape itself, share is 1/2. A direction given to pdf is taken to meet the shape. */
+#ifndef SUNFLECK_MAPPING_LIGHT_H
+#define SUNFLECK_MAPPING_LIGHT_H
+
+#include "sunfleck/mapping_sphere.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* v at length one; the pole if it has none. */
+static inline void sf_unit_direction(const float v[3], float out[3]) {
+    float square = sf_dot3(v, v), scale = square > 0.0f ? 1.0f / sqrtf(square) : 0.0f;
+    out[0] = v[0] * scale;
+    out[1] = v[1] * scale;
+    out[2] = square > 0.0f ? v[2] * scale : 1.0f;
+}
+
+/* ---- spherical triangle ---- */
+
+/* Arvo 1995, "Stratified Sampling of Spherical Triangles", in the form of Peters 2021, "BRDF
+ * Importance Sampling for Polygonal Lights", which needs no angles of the triangle: it stays
+ * accurate where they cancel, so that the smallest triangles need no other method. */
+typedef struct sf_spherical_triangle {
+    float a[3], b[3], c[3]; /* directions to the vertices */
+    float side[3];          /* c x a, on b's side: the plane on which the sub-triangles end */
+    float base[3];          /* a x b, on c's side */
+    float volume;           /* |a . (b x c)| */
+    float sum, edge;        /* a.c + b.c and 1 + a.b: tan(2 pi share) = volume / (edge + sum) */
+    float share;            /* of the sphere */
+} sf_spherical_triangle;
+
+/* The vertices seen from the origin. The products are taken of the edges before anything is
+ * scaled, so that share is good to some ulp however small the triangle looks. */
+static inline void sf_spherical_triangle_init(sf_spherical_triangle *triangle, const float a[3], const float b[3],
+                                              const float c[3], const float origin[3]) {
+    float p[3], q[3], r[3], pq[3], pr[3], base[3], side[3];
+    for (int k = 0; k < 3; ++k) {
+        p[k] = a[k] - origin[k];
+        q[k] = b[k] - origin[k];
+        r[k] = c[k] - origin[k];
+        pq[k] = b[k] - a[k];
+        pr[k] = c[k] - a[k];
+    }
+    float pp = sf_dot3(p, p), qq = sf_dot3(q, q), rr = sf_dot3(r, r);
+    float inv_p = pp > 0.0f ? 1.0f / sqrtf(pp) : 0.0f, inv_q = qq > 0.0f ? 1.0f / sqrtf(qq) : 0.0f;
+    float inv_r = rr > 0.0f ? 1.0f / sqrtf(rr) : 0.0f;
+    sf_cross3(p, pq, base);
+    sf_cross3(pr, p, side);
+    float volume = sf_dot3(base, pr) * inv_p * inv_q * inv_r, turn = copysignf(1.0f, volume);
+    for (int k = 0; k < 3; ++k) {
+        triangle->a[k] = p[k] * inv_p;
+        triangle->b[k] = q[k] * inv_q;
+        triangle->c[k] = r[k] * inv_r;
+        triangle->base[k] = base[k] * (turn * inv_p * inv_q);
+        triangle->side[k] = side[k] * (turn * inv_p * inv_r);
+    }
+    triangle->volume = fabsf(volume);
+    triangle->sum = sf_dot3(triangle->a, triangle->c) + sf_dot3(triangle->b, triangle->c);
+    triangle->edge = 1.0f + sf_dot3(triangle->a, triangle->b);
+    triangle->share = sf_angle_2pi(triangle->volume, triangle->edge + triangle->sum);
+}
+/* The direction of (s, t): s cuts off a sub-triangle of that share at a, by a point d of the arc
+ * from a to c; t goes from b to d. */
+static inline void sf_spherical_triangle_draw(const sf_spherical_triangle *triangle, float s, float t, float w[3]) {
+    const float *a = triangle->a, *b = triangle->b, *c = triangle->c;
+    float sine, cosine, middle[3], d[3], gap[3];
+    sf_sincos_2pi(s * triangle->share, &sine, &cosine);
+    float scale = triangle->volume + sine, over = 1.0f / (scale > 0.0f ? scale : 1.0f);
+    float along_a = (triangle->volume * cosine - triangle->sum * sine) * over, along_c = triangle->edge * sine * over;
+    for (int k = 0; k < 3; ++k) middle[k] = along_a * a[k] + along_c * c[k];
+    float square = sf_dot3(middle, middle), twice = 2.0f * sf_dot3(a, middle) / (square > 0.0f ? square : 1.0f);
+    for (int k = 0; k < 3; ++k) {
+        d[k] = square > 0.0f ? twice * middle[k] - a[k] : a[k];
+        gap[k] = d[k] - b[k];
+    }
+    /* 1 - b.d from the chord; 1 - w.b is t of it. */
+    float drop = 0.5f * sf_dot3(gap, gap), rest = 2.0f - drop;
+    float out = sqrtf(t * ((2.0f - t * drop) / (rest > 0.0f ? rest : 1.0f)));
+    for (int k = 0; k < 3; ++k) gap[k] = ((1.0f - t * drop) - out * (1.0f - drop)) * b[k] + out * d[k];
+    sf_unit_direction(gap, w);
+}
+/* (s, t) of a direction of the triangle. */
+static inline void sf_spherical_triangle_find(const sf_spherical_triangle *triangle, const float w[3], float u[2]) {
+    const float *a = triangle->a, *b = triangle->b;
+    float step[3], d[3], gap[3], from_a[3];
+    for (int k = 0; k < 3; ++k) step[k] = w[k] - b[k];
+    /* d: where the arc from b through w meets the plane of a and c. */
+    float fall = -sf_dot3(triangle->side, step);
+    for (int k = 0; k < 3; ++k) d[k] = fall * b[k] + triangle->volume * step[k];
+    float square = sf_dot3(d, d), scale = square > 0.0f ? 1.0f / sqrtf(square) : 0.0f;
+    for (int k = 0; k < 3; ++k) {
+        d[k] = square > 0.0f ? d[k] * scale : a[k];
+        gap[k] = d[k] - b[k];
+        from_a[k] = d[k] - a[k];
+    }
+    float volume = fabsf(sf_dot3(triangle->base, from_a)), drop = sf_dot3(gap, gap);
+    float share = sf_angle_2pi(volume, triangle->edge + (sf_dot3(a, d) + sf_dot3(b, d)));
+    u[0] = sf_unit_clamp(share / (triangle->share > 0.0f ? triangle->share : 1.0f));
+    u[1] = sf_unit_clamp(sf_dot3(step, step) / (drop > 0.0f ? drop : 1.0f));
+}
+
+static inline void sf_spherical_triangle_sample(float s, float t, const float a[3], const float b[3], const float c[3],
+                                                const float origin[3], float w[3]) {
+    sf_spherical_triangle triangle;
+    SF_ASSERT_UNIT(s, t);
+    sf_spherical_triangle_init(&triangle, a, b, c, origin);
+    sf_spherical_triangle_draw(&triangle, s, t, w);
+}
+static inline float sf_spherical_triangle_pdf(const float w[3], const float a[3], const float b[3], const float c[3],
+                                              const float origin[3]) {
+    sf_spherical_triangle triangle;
+    (void)w;
+    sf_spherical_triangle_init(&triangle, a, b, c, origin);
+    return 0.25f / (SF_PI_F * triangle.share);
+}
+static inline void sf_spherical_triangle_invert(const float w[3], const float a[3], const float b[3], const float c[3],
+                                                const float origin[3], float u[2]) {
+    sf_spherical_triangle triangle;
+    sf_spherical_triangle_init(&triangle, a, b, c, origin);
+    sf_spherical_triangle_find(&triangle, w, u);
+}
+
+/* ---- spherical rectangle ---- */
+
+/* Urena, Fajardo & King 2013, "An Area-Preserving Parametrization for Spherical Rectangles": a
+ * plane that turns about the y axis sweeps the solid angle by s, and t goes along the arc that
+ * it cuts. Their formulas are sums of angles near pi, which leave nothing of a small solid angle
+ * in single precision; here the rectangle's solid angle is one arctangent (sf_strip_share), the
+ * turning plane comes from it in closed form, and one step of Newton's method against the same
+ * arctangent takes away what a grazing view loses. */
+typedef struct sf_spherical_rectangle {
+    float x[3], y[3], z[3];     /* axes: along the edges, and from the origin to the plane */
+    float x0, x1, y0, y1, near; /* the rectangle at distance `near`; its largest coordinate is 1 */
+    float rise, product;        /* of b = y / sqrt(y^2 + near^2): b1 - b0, and b0 b1 */
+    float before;               /* share of the strip from x = 0 to x0, negative if x0 is */
+    float share;                /* of the sphere */
+} sf_spherical_rectangle;
+
+/* The share of the sphere that the rectangle x0 .. x1, y0 .. y1 at distance `near` takes. With
+ * n / det the cotangent of half of each of its two triangles (Van Oosterom & Strackee 1983), the
+ * product of (n1 + i det) and (n2 + i det) has the sum of the two as its angle. */
+static inline float sf_strip_share(float x0, float x1, float y0, float y1, float near) {
+    float xx = x0 * x1, yy = y0 * y1, zz = near * near;
+    float r00 = sqrtf(x0 * x0 + y0 * y0 + zz), r10 = sqrtf(x1 * x1 + y0 * y0 + zz);
+    float r01 = sqrtf(x0 * x0 + y1 * y1 + zz), r11 = sqrtf(x1 * x1 + y1 * y1 + zz);
+    float across = xx + yy + zz;
+    float n1 = r00 * r10 * r11 + (xx + y0 * y0 + zz) * r11 + (x1 * x1 + yy + zz) * r00 + across * r10;
+    float n2 = r00 * r11 * r01 + across * r01 + (xx + y1 * y1 + zz) * r00 + (x0 * x0 + yy + zz) * r11;
+    float det = near * ((x1 - x0) * (y1 - y0));
+    return sf_angle_2pi(det * (n1 + n2), n1 * n2 - det * det);
+}
+
+/* The rectangle of corner a and the corners b and c beside it, (b - a) . (c - a) = 0, seen from
+ * the origin. */
+static inline void sf_spherical_rectangle_init(sf_spherical_rectangle *rectangle, const float a[3], const float b[3],
+                                               const float c[3], const float origin[3]) {
+    float ex[3], ey[3], d[3];
+    for (int k = 0; k < 3; ++k) {
+        ex[k] = b[k] - a[k];
+        ey[k] = c[k] - a[k];
+        d[k] = a[k] - origin[k];
+    }
+    sf_unit_direction(ex, rectangle->x);
+    sf_unit_direction(ey, rectangle->y);
+    sf_cross3(rectangle->x, rectangle->y, rectangle->z);
+    float near = sf_dot3(d, rectangle->z), x0 = sf_dot3(d, rectangle->x), y0 = sf_dot3(d, rectangle->y);
+    float x1 = x0 + sf_dot3(ex, rectangle->x), y1 = y0 + sf_dot3(ey, rectangle->y), turn = copysignf(1.0f, near);
+    float wide = fabsf(x0) > fabsf(x1) ? fabsf(x0) : fabsf(x1), high = fabsf(y0) > fabsf(y1) ? fabsf(y0) : fabsf(y1);
+    float largest = wide > high ? wide : high, scale;
+    largest = largest > fabsf(near) ? largest : fabsf(near);
+    scale = 1.0f / (largest > 0.0f ? largest : 1.0f);
+    for (int k = 0; k < 3; ++k) rectangle->z[k] *= turn;
+    rectangle->near = near = fabsf(near) * scale;
+    rectangle->x0 = x0 *= scale;
+    rectangle->x1 = x1 *= scale;
+    rectangle->y0 = y0 *= scale;
+    rectangle->y1 = y1 *= scale;
+    rectangle->share = sf_strip_share(x0, x1, y0, y1, near);
+    rectangle->before = copysignf(sf_strip_share(0.0f, fabsf(x0), y0, y1, near), x0);
+    float q0 = sqrtf(y0 * y0 + near * near), q1 = sqrtf(y1 * y1 + near * near), qq = q0 * q1;
+    qq = qq > 0.0f ? qq : 1.0f;
+    /* b1 - b0; of one sign they cancel, and the difference of squares does not. */
+    float plain = y1 * q0 - y0 * q1, sum = y1 * q0 + y0 * q1;
+    float steep = near * near * ((y1 - y0) * (y1 + y0)) / (sum != 0.0f ? sum : 1.0f);
+    rectangle->rise = (y0 * y1 > 0.0f ? steep : plain) / qq;
+    rectangle->product = y0 * y1 / qq;
+}
+static inline float sf_clamp_between(float x, float low, float high) {
+    x = x > low ? x : low;
+    return x < high ? x : high;
+}
+/* The x at which the turning plane has swept s of the solid angle. */
+static inline float sf_spherical_rectangle_sweep(const sf_spherical_rectangle *r, float s) {
+    float half = r->before + s * r->share, sine, cosine, near = r->near;
+    sf_sincos_2pi(fabsf(half), &sine, &cosine);
+    /* The strip from 0 to x is theta = 4 pi half with sin theta = c sqrt(b0^2 + b1^2 - 2 b0 b1
+     * cos theta), c the sine of the plane's angle. */
+    float square = r->rise * r->rise + 4.0f * r->product * (sine * sine);
+    float c = 2.0f * sine * cosine / (square > 0.0f ? sqrtf(square) : 1.0f);
+    c = c < 1.0f ? c : 1.0f;
+    float flat = (1.0f - c) * (1.0f + c), x = copysignf(near * c / (flat > 0.0f ? sqrtf(flat) : 0x1p-60f), half);
+    x = sf_clamp_between(x, r->x0, r->x1);
+    /* The solid angle grows by h1 - h0 with the plane's angle, h = y / r at the edges. */
+    float square_x = x * x + near * near;
+    float h0 = r->y0 / sqrtf(square_x + r->y0 * r->y0 + 0x1p-100f), h1 = r->y1 / sqrtf(square_x + r->y1 * r->y1 + 0x1p-100f);
+    float off = s * r->share - sf_strip_share(r->x0, x, r->y0, r->y1, near), slope = h1 - h0;
+    float turn = 4.0f * SF_PI_F * off / (slope > 0.0f ? slope : 1.0f), under = near - x * turn;
+    float better = (near * x + near * near * turn) / (under > 0.0f ? under : 1.0f);
+    return sf_clamp_between(under > 0.0f ? better : x, r->x0, r->x1);
+}
+static inline void sf_spherical_rectangle_draw(const sf_spherical_rectangle *r, float s, float t, float w[3]) {
+    float x = sf_spherical_rectangle_sweep(r, s), square = x * x + r->near * r->near;
+    float d0 = sqrtf(square + r->y0 * r->y0), d1 = sqrtf(square + r->y1 * r->y1);
+    /* 1 - |h| and 1 + |h| at both edges, then 1 - h and 1 + h of the sample: nothing cancels. */
+    float low0 = square / (d0 * (d0 + fabsf(r->y0)) + 0x1p-120f), low1 = square / (d1 * (d1 + fabsf(r->y1)) + 0x1p-120f);
+    float less0 = r->y0 > 0.0f ? low0 : 2.0f - low0, less1 = r->y1 > 0.0f ? low1 : 2.0f - low1;
+    float more0 = r->y0 > 0.0f ? 2.0f - low0 : low0, more1 = r->y1 > 0.0f ? 2.0f - low1 : low1;
+    float less = (1.0f - t) * less0 + t * less1, more = (1.0f - t) * more0 + t * more1;
+    float h = more < 1.0f ? more - 1.0f : 1.0f - less, ring = sqrtf(less * more), root = sqrtf(square);
+    float along = root > 0.0f ? ring / root : 0.0f, wx = x * along, wz = root > 0.0f ? r->near * along : ring;
+    for (int k = 0; k < 3; ++k) w[k] = (wx * r->x[k] + h * r->y[k]) + wz * r->z[k];
+}
+static inline void sf_spherical_rectangle_find(const sf_spherical_rectangle *r, const float w[3], float u[2]) {
+    float wx = sf_dot3(w, r->x), wy = sf_dot3(w, r->y), wz = sf_dot3(w, r->z);
+    float x = sf_clamp_between(r->near * wx / (wz > 0.0f ? wz : 0x1p-60f), r->x0, r->x1), square = x * x + r->near * r->near;
+    float h0 = r->y0 / sqrtf(square + r->y0 * r->y0 + 0x1p-100f), h1 = r->y1 / sqrtf(square + r->y1 * r->y1 + 0x1p-100f);
+    float part = sf_strip_share(r->x0, x, r->y0, r->y1, r->near);
+    u[0] = sf_unit_clamp(part / (r->share > 0.0f ? r->share : 1.0f));
+    u[1] = sf_unit_clamp((wy - h0) / (h1 > h0 ? h1 - h0 : 1.0f));
+}
+
+static inline void sf_spherical_rectangle_sample(float s, float t, const float a[3], const float b[3],
+                                                 const float c[3], const float origin[3], float w[3]) {
+    sf_spherical_rectangle rectangle;
+    SF_ASSERT_UNIT(s, t);
+    sf_spherical_rectangle_init(&rectangle, a, b, c, origin);
+    sf_spherical_rectangle_draw(&rectangle, s, t, w);
+}
+static inline float sf_spherical_rectangle_pdf(const float w[3], const float a[3], const float b[3], const float c[3],
+                                               const float origin[3]) {
+    sf_spherical_rectangle rectangle;
+    (void)w;
+    sf_spherical_rectangle_init(&rectangle, a, b, c, origin);
+    return 0.25f / (SF_PI_F * rectangle.share);
+}
+static inline void sf_spherical_rectangle_invert(const float w[3], const float a[3], const float b[3],
+                                                 const float c[3], const float origin[3], float u[2]) {
+    sf_spherical_rectangle rectangle;
+    sf_spherical_rectangle_init(&rectangle, a, b, c, origin);
+    sf_spherical_rectangle_find(&rectangle, w, u);
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
