@@ -267,10 +267,10 @@ static inline double sf_lanczos_sample_f64(double s) {
 static inline double sf_lanczos_f64(double x) {
     double d = fabs(x - 0.5), whole = (double)(int32_t)(d < 3.0 ? d : 3.0), sine, third, cosine;
     sf_sincos_2pi_f64(0.5 * (d < 3.0 ? d - whole : 0.0), &sine, &cosine);
-    sf_sincos_2pi_f64((d < 3.0 ? 3.0 - d : 0.0) * (1.0 / 6.0), &third, &cosine);
+    sf_sincos_2pi_f64((d < 1.5 ? d : d < 3.0 ? 3.0 - d : 0.0) * (1.0 / 6.0), &third, &cosine);
     sine = whole == 1.0 ? -sine : sine;
-    double f = 3.0 * sine * third / (SF_PI * SF_PI * (d > 0x1p-20 ? d * d : 1.0));
-    return d > 0x1p-20 ? f : 1.0;
+    double f = 3.0 * sine * third / (SF_PI * SF_PI * (d > 0x1p-40 ? d * d : 1.0));
+    return d > 0x1p-40 ? f : 1.0;
 }
 static inline double sf_lanczos_invert_f64(double x) {
     const double *lobe = sf_lanczos_lobes_f64;
@@ -727,17 +727,23 @@ static inline void sf_unit_direction_f64(const double v[3], double out[3]) {
 }
 
 typedef struct sf_spherical_triangle_f64 {
-    double a[3], b[3], c[3];
+    double a[3], b[3];
+    double tangent[3];
     double side[3];
     double base[3];
     double volume;
-    double sum, edge;
-    double share;
+    double edge, corner;
+    double across;
+    double share, rest;
 } sf_spherical_triangle_f64;
+
+static inline double sf_one_plus_f64(double cosine, const double sine[3]) {
+    return cosine < 0.0 ? sf_dot3_f64(sine, sine) / (1.0 - cosine) : 1.0 + cosine;
+}
 
 static inline void sf_spherical_triangle_init_f64(sf_spherical_triangle_f64 *triangle, const double a[3], const double b[3],
                                               const double c[3], const double origin[3]) {
-    double p[3], q[3], r[3], pq[3], pr[3], base[3], side[3];
+    double p[3], q[3], r[3], pq[3], pr[3], base[3], side[3], direction_c[3];
     for (int k = 0; k < 3; ++k) {
         p[k] = a[k] - origin[k];
         q[k] = b[k] - origin[k];
@@ -754,31 +760,43 @@ static inline void sf_spherical_triangle_init_f64(sf_spherical_triangle_f64 *tri
     for (int k = 0; k < 3; ++k) {
         triangle->a[k] = p[k] * inv_p;
         triangle->b[k] = q[k] * inv_q;
-        triangle->c[k] = r[k] * inv_r;
+        direction_c[k] = r[k] * inv_r;
         triangle->base[k] = base[k] * (turn * inv_p * inv_q);
-        triangle->side[k] = side[k] * (turn * inv_p * inv_r);
+        side[k] *= inv_p * inv_r;
+        triangle->side[k] = side[k] * turn;
     }
+    sf_cross3_f64(triangle->a, side, triangle->tangent);
     triangle->volume = fabs(volume);
-    triangle->sum = sf_dot3_f64(triangle->a, triangle->c) + sf_dot3_f64(triangle->b, triangle->c);
-    triangle->edge = 1.0 + sf_dot3_f64(triangle->a, triangle->b);
-    triangle->share = sf_angle_2pi_f64(triangle->volume, triangle->edge + triangle->sum);
+    triangle->edge = sf_one_plus_f64(sf_dot3_f64(triangle->a, triangle->b), triangle->base);
+    triangle->corner = sf_one_plus_f64(sf_dot3_f64(triangle->a, direction_c), side);
+    double level = triangle->edge + (sf_dot3_f64(triangle->a, direction_c) + sf_dot3_f64(triangle->b, direction_c));
+    triangle->across = sqrt(volume * volume + level * level);
+    triangle->share = sf_angle_2pi_f64(triangle->volume, level);
+    triangle->rest = sf_angle_2pi_f64(triangle->volume, -level);
+}
+
+static inline double sf_sine_of_lesser_f64(double a, double b) {
+    double sine, cosine;
+    sf_sincos_2pi_f64(a < b ? a : b, &sine, &cosine);
+    return sine;
 }
 
 static inline void sf_spherical_triangle_draw_f64(const sf_spherical_triangle_f64 *triangle, double s, double t, double w[3]) {
-    const double *a = triangle->a, *b = triangle->b, *c = triangle->c;
-    double sine, cosine, middle[3], d[3], gap[3];
-    sf_sincos_2pi_f64(s * triangle->share, &sine, &cosine);
-    double scale = triangle->volume + sine, over = 1.0 / (scale > 0.0 ? scale : 1.0);
-    double along_a = (triangle->volume * cosine - triangle->sum * sine) * over, along_c = triangle->edge * sine * over;
-    for (int k = 0; k < 3; ++k) middle[k] = along_a * a[k] + along_c * c[k];
-    double square = sf_dot3_f64(middle, middle), twice = 2.0 * sf_dot3_f64(a, middle) / (square > 0.0 ? square : 1.0);
+    const double *a = triangle->a, *b = triangle->b, *tangent = triangle->tangent;
+    double sum[3], gap[3], cut = s * triangle->share, left = (1.0 - s) * triangle->share;
+    double sine_cut = sf_sine_of_lesser_f64(cut, triangle->rest + left), sine_left = sf_sine_of_lesser_f64(left, triangle->rest + cut);
+    double scale = sine_cut + sine_left, over = 1.0 / (scale > 0.0 ? scale : 1.0);
+    double up = triangle->edge * sine_cut * over, along = triangle->across * (sine_left * over) + triangle->corner * up;
+    double rise = up * up * sf_dot3_f64(tangent, tangent), square = along * along + rise, inverse = 1.0 / (square > 0.0 ? square : 1.0);
+    double turn_a = square > 0.0 ? (along * along - rise) * inverse : 1.0, turn_t = 2.0 * along * up * inverse;
     for (int k = 0; k < 3; ++k) {
-        d[k] = square > 0.0 ? twice * middle[k] - a[k] : a[k];
-        gap[k] = d[k] - b[k];
+        double d = turn_a * a[k] + turn_t * tangent[k];
+        gap[k] = d - b[k];
+        sum[k] = d + b[k];
     }
-    double drop = 0.5 * sf_dot3_f64(gap, gap), rest = 2.0 - drop;
+    double drop = 0.5 * sf_dot3_f64(gap, gap), rest = 0.5 * sf_dot3_f64(sum, sum);
     double out = sqrt(t * ((2.0 - t * drop) / (rest > 0.0 ? rest : 1.0)));
-    for (int k = 0; k < 3; ++k) gap[k] = ((1.0 - t * drop) - out * (1.0 - drop)) * b[k] + out * d[k];
+    for (int k = 0; k < 3; ++k) gap[k] = ((1.0 - t * drop) - out * rest) * b[k] + out * sum[k];
     sf_unit_direction_f64(gap, w);
 }
 
@@ -824,73 +842,78 @@ static inline void sf_spherical_triangle_invert_f64(const double w[3], const dou
 typedef struct sf_spherical_rectangle_f64 {
     double x[3], y[3], z[3];
     double x0, x1, y0, y1, near;
-    double rise, product;
-    double before;
+    double g0, g1;
+    double before, after;
     double share;
 } sf_spherical_rectangle_f64;
 
-static inline double sf_strip_share_f64(double x0, double x1, double y0, double y1, double near) {
-    double xx = x0 * x1, yy = y0 * y1, zz = near * near;
+static inline double sf_rectangle_share_f64(double x0, double x1, double width, double y0, double y1, double height, double near) {
+    double yy = y0 * y1, zz = near * near;
     double r00 = sqrt(x0 * x0 + y0 * y0 + zz), r10 = sqrt(x1 * x1 + y0 * y0 + zz);
     double r01 = sqrt(x0 * x0 + y1 * y1 + zz), r11 = sqrt(x1 * x1 + y1 * y1 + zz);
-    double across = xx + yy + zz;
-    double n1 = r00 * r10 * r11 + (xx + y0 * y0 + zz) * r11 + (x1 * x1 + yy + zz) * r00 + across * r10;
-    double n2 = r00 * r11 * r01 + across * r01 + (xx + y1 * y1 + zz) * r00 + (x0 * x0 + yy + zz) * r11;
-    double det = near * ((x1 - x0) * (y1 - y0));
+    double across = x0 * x1 + yy + zz;
+    double n1 = r00 * r10 * r11 + (x0 * x1 + y0 * y0 + zz) * r11 + (x1 * x1 + yy + zz) * r00 + across * r10;
+    double n2 = r00 * r11 * r01 + across * r01 + (x0 * x1 + y1 * y1 + zz) * r00 + (x0 * x0 + yy + zz) * r11;
+    double det = near * (width * height);
     return sf_angle_2pi_f64(det * (n1 + n2), n1 * n2 - det * det);
 }
 
-static inline void sf_spherical_rectangle_init_f64(sf_spherical_rectangle_f64 *rectangle, const double a[3], const double b[3],
-                                               const double c[3], const double origin[3]) {
-    double ex[3], ey[3], d[3];
-    for (int k = 0; k < 3; ++k) {
-        ex[k] = b[k] - a[k];
-        ey[k] = c[k] - a[k];
-        d[k] = a[k] - origin[k];
-    }
-    sf_unit_direction_f64(ex, rectangle->x);
-    sf_unit_direction_f64(ey, rectangle->y);
-    sf_cross3_f64(rectangle->x, rectangle->y, rectangle->z);
-    double near = sf_dot3_f64(d, rectangle->z), x0 = sf_dot3_f64(d, rectangle->x), y0 = sf_dot3_f64(d, rectangle->y);
-    double x1 = x0 + sf_dot3_f64(ex, rectangle->x), y1 = y0 + sf_dot3_f64(ey, rectangle->y), turn = copysign(1.0, near);
-    double wide = fabs(x0) > fabs(x1) ? fabs(x0) : fabs(x1), high = fabs(y0) > fabs(y1) ? fabs(y0) : fabs(y1);
-    double largest = wide > high ? wide : high, scale;
-    largest = largest > fabs(near) ? largest : fabs(near);
-    scale = 1.0 / (largest > 0.0 ? largest : 1.0);
-    for (int k = 0; k < 3; ++k) rectangle->z[k] *= turn;
-    rectangle->near = near = fabs(near) * scale;
-    rectangle->x0 = x0 *= scale;
-    rectangle->x1 = x1 *= scale;
-    rectangle->y0 = y0 *= scale;
-    rectangle->y1 = y1 *= scale;
-    rectangle->share = sf_strip_share_f64(x0, x1, y0, y1, near);
-    rectangle->before = copysign(sf_strip_share_f64(0.0, fabs(x0), y0, y1, near), x0);
-    double q0 = sqrt(y0 * y0 + near * near), q1 = sqrt(y1 * y1 + near * near), qq = q0 * q1;
-    qq = qq > 0.0 ? qq : 1.0;
-    double plain = y1 * q0 - y0 * q1, sum = y1 * q0 + y0 * q1;
-    double steep = near * near * ((y1 - y0) * (y1 + y0)) / (sum != 0.0 ? sum : 1.0);
-    rectangle->rise = (y0 * y1 > 0.0 ? steep : plain) / qq;
-    rectangle->product = y0 * y1 / qq;
+static inline double sf_strip_share_f64(double x, double y0, double y1, double height, double near) {
+    double q0 = y0 * y0 + near * near, q1 = y1 * y1 + near * near, ax = fabs(x);
+    double far0 = sqrt(x * x + q0) + ax, far1 = sqrt(x * x + q1) + ax;
+    double g0 = x < 0.0 ? q0 / (far0 > 0.0 ? far0 : 1.0) : far0, g1 = x < 0.0 ? q1 / (far1 > 0.0 ? far1 : 1.0) : far1;
+    return sf_angle_2pi_f64(near * height, g0 * g1 + y0 * y1 + near * near);
 }
 static inline double sf_clamp_between_f64(double x, double low, double high) {
     x = x > low ? x : low;
     return x < high ? x : high;
 }
 
+static inline void sf_spherical_rectangle_init_f64(sf_spherical_rectangle_f64 *rectangle, const double a[3], const double b[3],
+                                               const double c[3], const double origin[3]) {
+    double ex[3], ey[3], d[3], normal[3], spare[3], other[3];
+    for (int k = 0; k < 3; ++k) {
+        ex[k] = b[k] - a[k];
+        ey[k] = c[k] - a[k];
+        d[k] = a[k] - origin[k];
+    }
+    sf_unit_direction_f64(ex, rectangle->x);
+    sf_cross3_f64(rectangle->x, ey, normal);
+    sf_frame_from_normal_f64(rectangle->x, spare, other);
+    int flat = !(sf_dot3_f64(normal, normal) > 0.0);
+    for (int k = 0; k < 3; ++k) normal[k] = flat ? spare[k] : normal[k];
+    sf_unit_direction_f64(normal, rectangle->z);
+    sf_cross3_f64(rectangle->z, rectangle->x, rectangle->y);
+    double near = sf_dot3_f64(d, rectangle->z), x0 = sf_dot3_f64(d, rectangle->x), y0 = sf_dot3_f64(d, rectangle->y);
+    double width = sf_dot3_f64(ex, rectangle->x), height = sf_dot3_f64(ey, rectangle->y), turn = copysign(1.0, near);
+    double x1 = x0 + width, y1 = y0 + height;
+    double wide = fabs(x0) > fabs(x1) ? fabs(x0) : fabs(x1), high = fabs(y0) > fabs(y1) ? fabs(y0) : fabs(y1);
+    double largest = wide > high ? wide : high;
+    largest = largest > fabs(near) ? largest : fabs(near);
+    double scale = 1.0 / (largest > 0.0 ? largest : 1.0);
+    for (int k = 0; k < 3; ++k) rectangle->z[k] *= turn;
+    rectangle->near = near = fabs(near) * scale;
+    rectangle->x0 = x0 *= scale;
+    rectangle->x1 = x1 *= scale;
+    rectangle->y0 = y0 *= scale;
+    rectangle->y1 = y1 *= scale;
+    rectangle->g0 = sf_angle_2pi_f64(near, -y0);
+    rectangle->g1 = sf_angle_2pi_f64(near, y1);
+    rectangle->before = sf_strip_share_f64(-x0, y0, y1, height * scale, near);
+    rectangle->after = sf_strip_share_f64(x1, y0, y1, height * scale, near);
+    double share = sf_rectangle_share_f64(x0, x1, width * scale, y0, y1, height * scale, near);
+    double within = (x0 * x1 < 0.0) & (y0 * y1 < 0.0) ? 0.5 : 0.0;
+    rectangle->share = near > 0.0 ? share : within;
+}
+
 static inline double sf_spherical_rectangle_sweep_f64(const sf_spherical_rectangle_f64 *r, double s) {
-    double half = r->before + s * r->share, sine, cosine, near = r->near;
-    sf_sincos_2pi_f64(fabs(half), &sine, &cosine);
-    double square = r->rise * r->rise + 4.0 * r->product * (sine * sine);
-    double c = 2.0 * sine * cosine / (square > 0.0 ? sqrt(square) : 1.0);
-    c = c < 1.0 ? c : 1.0;
-    double flat = (1.0 - c) * (1.0 + c), x = copysign(near * c / (flat > 0.0 ? sqrt(flat) : 0x1p-60), half);
-    x = sf_clamp_between_f64(x, r->x0, r->x1);
-    double square_x = x * x + near * near;
-    double h0 = r->y0 / sqrt(square_x + r->y0 * r->y0 + 0x1p-100), h1 = r->y1 / sqrt(square_x + r->y1 * r->y1 + 0x1p-100);
-    double off = s * r->share - sf_strip_share_f64(r->x0, x, r->y0, r->y1, near), slope = h1 - h0;
-    double turn = 4.0 * SF_PI * off / (slope > 0.0 ? slope : 1.0), under = near - x * turn;
-    double better = (near * x + near * near * turn) / (under > 0.0 ? under : 1.0);
-    return sf_clamp_between_f64(under > 0.0 ? better : x, r->x0, r->x1);
+    double p = r->before + s * r->share, q = r->after + (1.0 - s) * r->share, edges = r->g0 + r->g1;
+    double lesser = p < q ? p : q, difference = p < q ? q - p : p - q;
+    double product = sf_sine_of_lesser_f64(p, edges + q) * sf_sine_of_lesser_f64(q, edges + p) *
+                    (sf_sine_of_lesser_f64(r->g0 + q, r->g1 + p) * sf_sine_of_lesser_f64(r->g1 + q, r->g0 + p));
+    double across = r->near * sf_sine_of_lesser_f64(difference, edges + 2.0 * lesser);
+    double x = across / (product > 0.0 ? 2.0 * sqrt(product) : 0x1p-60);
+    return sf_clamp_between_f64(copysign(x, p - q), r->x0, r->x1);
 }
 static inline void sf_spherical_rectangle_draw_f64(const sf_spherical_rectangle_f64 *r, double s, double t, double w[3]) {
     double x = sf_spherical_rectangle_sweep_f64(r, s), square = x * x + r->near * r->near;
@@ -907,7 +930,7 @@ static inline void sf_spherical_rectangle_find_f64(const sf_spherical_rectangle_
     double wx = sf_dot3_f64(w, r->x), wy = sf_dot3_f64(w, r->y), wz = sf_dot3_f64(w, r->z);
     double x = sf_clamp_between_f64(r->near * wx / (wz > 0.0 ? wz : 0x1p-60), r->x0, r->x1), square = x * x + r->near * r->near;
     double h0 = r->y0 / sqrt(square + r->y0 * r->y0 + 0x1p-100), h1 = r->y1 / sqrt(square + r->y1 * r->y1 + 0x1p-100);
-    double part = sf_strip_share_f64(r->x0, x, r->y0, r->y1, r->near);
+    double part = sf_rectangle_share_f64(r->x0, x, x - r->x0, r->y0, r->y1, r->y1 - r->y0, r->near);
     u[0] = sf_unit_clamp_f64(part / (r->share > 0.0 ? r->share : 1.0));
     u[1] = sf_unit_clamp_f64((wy - h0) / (h1 > h0 ? h1 - h0 : 1.0));
 }

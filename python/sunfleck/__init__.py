@@ -17,6 +17,7 @@ Examples
 # What is heavy (OpenImageIO, trimesh, tqdm) is imported where it is used, not here.
 from sunfleck import mapping, scenes
 from sunfleck._core import version as _version
+from sunfleck.discrete import AliasTable, PiecewiseConstant1D, PiecewiseConstant2D
 from sunfleck.error import Error
 from sunfleck.estimate import Moments, VectorMoments
 from sunfleck.load import load
@@ -33,11 +34,14 @@ __all__ = [
     "PATTERNS",
     "RNGS",
     "STOP_REASONS",
+    "AliasTable",
     "Camera",
     "Error",
     "Image",
     "Mesh",
     "Moments",
+    "PiecewiseConstant1D",
+    "PiecewiseConstant2D",
     "Plan",
     "PlanDimensions",
     "Progress",

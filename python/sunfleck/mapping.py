@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sunfleck import _core
-from sunfleck._arguments import output_array
+from sunfleck._arguments import output_array, real_array
 
 __all__ = [
     "MAPPINGS",
@@ -60,19 +60,6 @@ __all__ = [
 
 MAPPINGS: dict[str, str] = _core.mappings()
 """The mappings: name → one line about it."""
-
-
-def _real_array(name: str, value: ArrayLike, dtype: np.dtype[Any] | None) -> NDArray[Any]:
-    """Real numbers as float32 or float64: as wanted, else float32 stays and the rest is float64."""
-    try:
-        array = np.asarray(value)
-    except ValueError as error:
-        raise ValueError(f"{name} is not a regular array: {error}") from None
-    if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name} has dtype {array.dtype}; give real numbers")
-    if dtype is None:
-        dtype = np.dtype(np.float32 if array.dtype == np.float32 else np.float64)
-    return np.require(array, dtype, ["C", "A"])
 
 
 class Mapping:
@@ -228,7 +215,7 @@ class Mapping:
         named: dict[str, ArrayLike],
         out: NDArray[Any] | None,
     ) -> NDArray[Any]:
-        array = _real_array("the points", points, None)
+        array = real_array("the points", points, None)
         if array.ndim < 1 or array.shape[-1] != width:
             raise ValueError(f"the points have shape {array.shape}; {self.name}.{operation} takes (..., {width})")
         leading = array.shape[:-1]
@@ -267,7 +254,7 @@ class Mapping:
         self, name: str, components: int, value: ArrayLike, leading: tuple[int, ...], dtype: np.dtype[Any]
     ) -> NDArray[Any]:
         """One value for all points, or one for each, packed."""
-        array = _real_array(name, value, dtype)
+        array = real_array(name, value, dtype)
         one = () if components == 1 else (components,)
         if array.shape == one:
             return array

@@ -31,23 +31,31 @@ static inline void sf_unit_direction(const float v[3], float out[3]) {
 
 /* ---- spherical triangle ---- */
 
-/* Arvo 1995, "Stratified Sampling of Spherical Triangles", in the form of Peters 2021, "BRDF
- * Importance Sampling for Polygonal Lights", which needs no angles of the triangle: it stays
- * accurate where they cancel, so that the smallest triangles need no other method. */
+/* Arvo 1995, "Stratified Sampling of Spherical Triangles", without the angles of the triangle: as
+ * in Peters 2021, "BRDF Importance Sampling for Polygonal Lights", the cut comes from the tangent
+ * of half a solid angle (Van Oosterom & Strackee 1983). The terms are arranged so that they only
+ * add up, so that neither small triangles nor those around the origin's foot need another
+ * method. */
 typedef struct sf_spherical_triangle {
-    float a[3], b[3], c[3]; /* directions to the vertices */
+    float a[3], b[3];       /* directions to the vertices */
+    float tangent[3];       /* of the arc from a to c, at a; as long as the sine of the arc */
     float side[3];          /* c x a, on b's side: the plane on which the sub-triangles end */
     float base[3];          /* a x b, on c's side */
     float volume;           /* |a . (b x c)| */
-    float sum, edge;        /* a.c + b.c and 1 + a.b: tan(2 pi share) = volume / (edge + sum) */
-    float share;            /* of the sphere */
+    float edge, corner;     /* 1 + a.b and 1 + a.c */
+    float across;           /* volume over the sine of half the solid angle */
+    float share, rest;      /* of the sphere; 1/2 - share, accurate where that is small */
 } sf_spherical_triangle;
 
+/* 1 + cos of an angle, given its sine as a vector: which does not cancel near pi. */
+static inline float sf_one_plus(float cosine, const float sine[3]) {
+    return cosine < 0.0f ? sf_dot3(sine, sine) / (1.0f - cosine) : 1.0f + cosine;
+}
 /* The vertices seen from the origin. The products are taken of the edges before anything is
  * scaled, so that share is good to some ulp however small the triangle looks. */
 static inline void sf_spherical_triangle_init(sf_spherical_triangle *triangle, const float a[3], const float b[3],
                                               const float c[3], const float origin[3]) {
-    float p[3], q[3], r[3], pq[3], pr[3], base[3], side[3];
+    float p[3], q[3], r[3], pq[3], pr[3], base[3], side[3], direction_c[3];
     for (int k = 0; k < 3; ++k) {
         p[k] = a[k] - origin[k];
         q[k] = b[k] - origin[k];
@@ -64,33 +72,46 @@ static inline void sf_spherical_triangle_init(sf_spherical_triangle *triangle, c
     for (int k = 0; k < 3; ++k) {
         triangle->a[k] = p[k] * inv_p;
         triangle->b[k] = q[k] * inv_q;
-        triangle->c[k] = r[k] * inv_r;
+        direction_c[k] = r[k] * inv_r;
         triangle->base[k] = base[k] * (turn * inv_p * inv_q);
-        triangle->side[k] = side[k] * (turn * inv_p * inv_r);
+        side[k] *= inv_p * inv_r;
+        triangle->side[k] = side[k] * turn;
     }
+    sf_cross3(triangle->a, side, triangle->tangent);
     triangle->volume = fabsf(volume);
-    triangle->sum = sf_dot3(triangle->a, triangle->c) + sf_dot3(triangle->b, triangle->c);
-    triangle->edge = 1.0f + sf_dot3(triangle->a, triangle->b);
-    triangle->share = sf_angle_2pi(triangle->volume, triangle->edge + triangle->sum);
+    triangle->edge = sf_one_plus(sf_dot3(triangle->a, triangle->b), triangle->base);
+    triangle->corner = sf_one_plus(sf_dot3(triangle->a, direction_c), side);
+    float level = triangle->edge + (sf_dot3(triangle->a, direction_c) + sf_dot3(triangle->b, direction_c));
+    triangle->across = sqrtf(volume * volume + level * level);
+    triangle->share = sf_angle_2pi(triangle->volume, level);
+    triangle->rest = sf_angle_2pi(triangle->volume, -level);
+}
+/* sin of 2 pi a turns, given a + b = 1/2. */
+static inline float sf_sine_of_lesser(float a, float b) {
+    float sine, cosine;
+    sf_sincos_2pi(a < b ? a : b, &sine, &cosine);
+    return sine;
 }
 /* The direction of (s, t): s cuts off a sub-triangle of that share at a, by a point d of the arc
  * from a to c; t goes from b to d. */
 static inline void sf_spherical_triangle_draw(const sf_spherical_triangle *triangle, float s, float t, float w[3]) {
-    const float *a = triangle->a, *b = triangle->b, *c = triangle->c;
-    float sine, cosine, middle[3], d[3], gap[3];
-    sf_sincos_2pi(s * triangle->share, &sine, &cosine);
-    float scale = triangle->volume + sine, over = 1.0f / (scale > 0.0f ? scale : 1.0f);
-    float along_a = (triangle->volume * cosine - triangle->sum * sine) * over, along_c = triangle->edge * sine * over;
-    for (int k = 0; k < 3; ++k) middle[k] = along_a * a[k] + along_c * c[k];
-    float square = sf_dot3(middle, middle), twice = 2.0f * sf_dot3(a, middle) / (square > 0.0f ? square : 1.0f);
+    const float *a = triangle->a, *b = triangle->b, *tangent = triangle->tangent;
+    float sum[3], gap[3], cut = s * triangle->share, left = (1.0f - s) * triangle->share;
+    float sine_cut = sf_sine_of_lesser(cut, triangle->rest + left), sine_left = sf_sine_of_lesser(left, triangle->rest + cut);
+    /* Halfway between a and d, as multiples of a and of the tangent; then d at twice the angle. */
+    float scale = sine_cut + sine_left, over = 1.0f / (scale > 0.0f ? scale : 1.0f);
+    float up = triangle->edge * sine_cut * over, along = triangle->across * (sine_left * over) + triangle->corner * up;
+    float rise = up * up * sf_dot3(tangent, tangent), square = along * along + rise, inverse = 1.0f / (square > 0.0f ? square : 1.0f);
+    float turn_a = square > 0.0f ? (along * along - rise) * inverse : 1.0f, turn_t = 2.0f * along * up * inverse;
     for (int k = 0; k < 3; ++k) {
-        d[k] = square > 0.0f ? twice * middle[k] - a[k] : a[k];
-        gap[k] = d[k] - b[k];
+        float d = turn_a * a[k] + turn_t * tangent[k];
+        gap[k] = d - b[k];
+        sum[k] = d + b[k];
     }
-    /* 1 - b.d from the chord; 1 - w.b is t of it. */
-    float drop = 0.5f * sf_dot3(gap, gap), rest = 2.0f - drop;
+    /* 1 - b.d and 1 + b.d; 1 - w.b is t of the former. */
+    float drop = 0.5f * sf_dot3(gap, gap), rest = 0.5f * sf_dot3(sum, sum);
     float out = sqrtf(t * ((2.0f - t * drop) / (rest > 0.0f ? rest : 1.0f)));
-    for (int k = 0; k < 3; ++k) gap[k] = ((1.0f - t * drop) - out * (1.0f - drop)) * b[k] + out * d[k];
+    for (int k = 0; k < 3; ++k) gap[k] = ((1.0f - t * drop) - out * rest) * b[k] + out * sum[k];
     sf_unit_direction(gap, w);
 }
 /* (s, t) of a direction of the triangle. */
@@ -137,90 +158,98 @@ static inline void sf_spherical_triangle_invert(const float w[3], const float a[
 /* ---- spherical rectangle ---- */
 
 /* Urena, Fajardo & King 2013, "An Area-Preserving Parametrization for Spherical Rectangles": a
- * plane that turns about the y axis sweeps the solid angle by s, and t goes along the arc that
- * it cuts. Their formulas are sums of angles near pi, which leave nothing of a small solid angle
- * in single precision; here the rectangle's solid angle is one arctangent (sf_strip_share), the
- * turning plane comes from it in closed form, and one step of Newton's method against the same
- * arctangent takes away what a grazing view loses. */
+ * plane that turns about the y axis sweeps the solid angle by s, and t goes along the arc that it
+ * cuts. Their formulas are sums of angles near pi and leave nothing of a small or grazing
+ * rectangle in single precision; here the same map is written in angles that only add up. Let
+ * 2P be the solid angle of the strip from x = -infinity to the plane, 2Q that of the rest of the
+ * strip, and g0 and g1 the angles atan(near / -y0) and atan(near / y1) of its edges; then
+ * P + Q + g0 + g1 = pi, and the plane stands at
+ *
+ *     x = near sin(P - Q) / (2 sqrt(sin P sin Q sin(g0 + Q) sin(g1 + Q))),
+ *
+ * where each sine is taken of its angle or of pi less it, whichever is small. */
 typedef struct sf_spherical_rectangle {
     float x[3], y[3], z[3];     /* axes: along the edges, and from the origin to the plane */
     float x0, x1, y0, y1, near; /* the rectangle at distance `near`; its largest coordinate is 1 */
-    float rise, product;        /* of b = y / sqrt(y^2 + near^2): b1 - b0, and b0 b1 */
-    float before;               /* share of the strip from x = 0 to x0, negative if x0 is */
+    float g0, g1;               /* in turns */
+    float before, after;        /* shares of the strip below x0 and above x1 */
     float share;                /* of the sphere */
 } sf_spherical_rectangle;
 
-/* The share of the sphere that the rectangle x0 .. x1, y0 .. y1 at distance `near` takes. With
- * n / det the cotangent of half of each of its two triangles (Van Oosterom & Strackee 1983), the
- * product of (n1 + i det) and (n2 + i det) has the sum of the two as its angle. */
-static inline float sf_strip_share(float x0, float x1, float y0, float y1, float near) {
-    float xx = x0 * x1, yy = y0 * y1, zz = near * near;
+/* The share of the sphere that the rectangle x0 .. x0 + width = x1, y0 .. y0 + height = y1 at
+ * distance `near` takes. With n / det the cotangent of half of each of its two triangles (Van
+ * Oosterom & Strackee 1983), the product of (n1 + i det) and (n2 + i det) has the sum of the two as
+ * its angle. */
+static inline float sf_rectangle_share(float x0, float x1, float width, float y0, float y1, float height, float near) {
+    float yy = y0 * y1, zz = near * near;
     float r00 = sqrtf(x0 * x0 + y0 * y0 + zz), r10 = sqrtf(x1 * x1 + y0 * y0 + zz);
     float r01 = sqrtf(x0 * x0 + y1 * y1 + zz), r11 = sqrtf(x1 * x1 + y1 * y1 + zz);
-    float across = xx + yy + zz;
-    float n1 = r00 * r10 * r11 + (xx + y0 * y0 + zz) * r11 + (x1 * x1 + yy + zz) * r00 + across * r10;
-    float n2 = r00 * r11 * r01 + across * r01 + (xx + y1 * y1 + zz) * r00 + (x0 * x0 + yy + zz) * r11;
-    float det = near * ((x1 - x0) * (y1 - y0));
+    float across = x0 * x1 + yy + zz;
+    float n1 = r00 * r10 * r11 + (x0 * x1 + y0 * y0 + zz) * r11 + (x1 * x1 + yy + zz) * r00 + across * r10;
+    float n2 = r00 * r11 * r01 + across * r01 + (x0 * x1 + y1 * y1 + zz) * r00 + (x0 * x0 + yy + zz) * r11;
+    float det = near * (width * height);
     return sf_angle_2pi(det * (n1 + n2), n1 * n2 - det * det);
+}
+/* The share of the endless strip from x on: a triangle whose third vertex is the x axis. */
+static inline float sf_strip_share(float x, float y0, float y1, float height, float near) {
+    float q0 = y0 * y0 + near * near, q1 = y1 * y1 + near * near, ax = fabsf(x);
+    float far0 = sqrtf(x * x + q0) + ax, far1 = sqrtf(x * x + q1) + ax;
+    /* r + x, which for negative x is q / (r - x). */
+    float g0 = x < 0.0f ? q0 / (far0 > 0.0f ? far0 : 1.0f) : far0, g1 = x < 0.0f ? q1 / (far1 > 0.0f ? far1 : 1.0f) : far1;
+    return sf_angle_2pi(near * height, g0 * g1 + y0 * y1 + near * near);
+}
+static inline float sf_clamp_between(float x, float low, float high) {
+    x = x > low ? x : low;
+    return x < high ? x : high;
 }
 
 /* The rectangle of corner a and the corners b and c beside it, (b - a) . (c - a) = 0, seen from
  * the origin. */
 static inline void sf_spherical_rectangle_init(sf_spherical_rectangle *rectangle, const float a[3], const float b[3],
                                                const float c[3], const float origin[3]) {
-    float ex[3], ey[3], d[3];
+    float ex[3], ey[3], d[3], normal[3], spare[3], other[3];
     for (int k = 0; k < 3; ++k) {
         ex[k] = b[k] - a[k];
         ey[k] = c[k] - a[k];
         d[k] = a[k] - origin[k];
     }
     sf_unit_direction(ex, rectangle->x);
-    sf_unit_direction(ey, rectangle->y);
-    sf_cross3(rectangle->x, rectangle->y, rectangle->z);
+    sf_cross3(rectangle->x, ey, normal);
+    sf_frame_from_normal(rectangle->x, spare, other); /* where there is no area */
+    int flat = !(sf_dot3(normal, normal) > 0.0f);
+    for (int k = 0; k < 3; ++k) normal[k] = flat ? spare[k] : normal[k];
+    sf_unit_direction(normal, rectangle->z);
+    sf_cross3(rectangle->z, rectangle->x, rectangle->y); /* at right angles, though the corners are rounded */
     float near = sf_dot3(d, rectangle->z), x0 = sf_dot3(d, rectangle->x), y0 = sf_dot3(d, rectangle->y);
-    float x1 = x0 + sf_dot3(ex, rectangle->x), y1 = y0 + sf_dot3(ey, rectangle->y), turn = copysignf(1.0f, near);
+    float width = sf_dot3(ex, rectangle->x), height = sf_dot3(ey, rectangle->y), turn = copysignf(1.0f, near);
+    float x1 = x0 + width, y1 = y0 + height;
     float wide = fabsf(x0) > fabsf(x1) ? fabsf(x0) : fabsf(x1), high = fabsf(y0) > fabsf(y1) ? fabsf(y0) : fabsf(y1);
-    float largest = wide > high ? wide : high, scale;
+    float largest = wide > high ? wide : high;
     largest = largest > fabsf(near) ? largest : fabsf(near);
-    scale = 1.0f / (largest > 0.0f ? largest : 1.0f);
+    float scale = 1.0f / (largest > 0.0f ? largest : 1.0f);
     for (int k = 0; k < 3; ++k) rectangle->z[k] *= turn;
     rectangle->near = near = fabsf(near) * scale;
     rectangle->x0 = x0 *= scale;
     rectangle->x1 = x1 *= scale;
     rectangle->y0 = y0 *= scale;
     rectangle->y1 = y1 *= scale;
-    rectangle->share = sf_strip_share(x0, x1, y0, y1, near);
-    rectangle->before = copysignf(sf_strip_share(0.0f, fabsf(x0), y0, y1, near), x0);
-    float q0 = sqrtf(y0 * y0 + near * near), q1 = sqrtf(y1 * y1 + near * near), qq = q0 * q1;
-    qq = qq > 0.0f ? qq : 1.0f;
-    /* b1 - b0; of one sign they cancel, and the difference of squares does not. */
-    float plain = y1 * q0 - y0 * q1, sum = y1 * q0 + y0 * q1;
-    float steep = near * near * ((y1 - y0) * (y1 + y0)) / (sum != 0.0f ? sum : 1.0f);
-    rectangle->rise = (y0 * y1 > 0.0f ? steep : plain) / qq;
-    rectangle->product = y0 * y1 / qq;
-}
-static inline float sf_clamp_between(float x, float low, float high) {
-    x = x > low ? x : low;
-    return x < high ? x : high;
+    rectangle->g0 = sf_angle_2pi(near, -y0);
+    rectangle->g1 = sf_angle_2pi(near, y1);
+    rectangle->before = sf_strip_share(-x0, y0, y1, height * scale, near);
+    rectangle->after = sf_strip_share(x1, y0, y1, height * scale, near);
+    float share = sf_rectangle_share(x0, x1, width * scale, y0, y1, height * scale, near);
+    float within = (x0 * x1 < 0.0f) & (y0 * y1 < 0.0f) ? 0.5f : 0.0f;
+    rectangle->share = near > 0.0f ? share : within;
 }
 /* The x at which the turning plane has swept s of the solid angle. */
 static inline float sf_spherical_rectangle_sweep(const sf_spherical_rectangle *r, float s) {
-    float half = r->before + s * r->share, sine, cosine, near = r->near;
-    sf_sincos_2pi(fabsf(half), &sine, &cosine);
-    /* The strip from 0 to x is theta = 4 pi half with sin theta = c sqrt(b0^2 + b1^2 - 2 b0 b1
-     * cos theta), c the sine of the plane's angle. */
-    float square = r->rise * r->rise + 4.0f * r->product * (sine * sine);
-    float c = 2.0f * sine * cosine / (square > 0.0f ? sqrtf(square) : 1.0f);
-    c = c < 1.0f ? c : 1.0f;
-    float flat = (1.0f - c) * (1.0f + c), x = copysignf(near * c / (flat > 0.0f ? sqrtf(flat) : 0x1p-60f), half);
-    x = sf_clamp_between(x, r->x0, r->x1);
-    /* The solid angle grows by h1 - h0 with the plane's angle, h = y / r at the edges. */
-    float square_x = x * x + near * near;
-    float h0 = r->y0 / sqrtf(square_x + r->y0 * r->y0 + 0x1p-100f), h1 = r->y1 / sqrtf(square_x + r->y1 * r->y1 + 0x1p-100f);
-    float off = s * r->share - sf_strip_share(r->x0, x, r->y0, r->y1, near), slope = h1 - h0;
-    float turn = 4.0f * SF_PI_F * off / (slope > 0.0f ? slope : 1.0f), under = near - x * turn;
-    float better = (near * x + near * near * turn) / (under > 0.0f ? under : 1.0f);
-    return sf_clamp_between(under > 0.0f ? better : x, r->x0, r->x1);
+    float p = r->before + s * r->share, q = r->after + (1.0f - s) * r->share, edges = r->g0 + r->g1;
+    float lesser = p < q ? p : q, difference = p < q ? q - p : p - q;
+    float product = sf_sine_of_lesser(p, edges + q) * sf_sine_of_lesser(q, edges + p) *
+                    (sf_sine_of_lesser(r->g0 + q, r->g1 + p) * sf_sine_of_lesser(r->g1 + q, r->g0 + p));
+    float across = r->near * sf_sine_of_lesser(difference, edges + 2.0f * lesser);
+    float x = across / (product > 0.0f ? 2.0f * sqrtf(product) : 0x1p-60f);
+    return sf_clamp_between(copysignf(x, p - q), r->x0, r->x1);
 }
 static inline void sf_spherical_rectangle_draw(const sf_spherical_rectangle *r, float s, float t, float w[3]) {
     float x = sf_spherical_rectangle_sweep(r, s), square = x * x + r->near * r->near;
@@ -238,7 +267,7 @@ static inline void sf_spherical_rectangle_find(const sf_spherical_rectangle *r, 
     float wx = sf_dot3(w, r->x), wy = sf_dot3(w, r->y), wz = sf_dot3(w, r->z);
     float x = sf_clamp_between(r->near * wx / (wz > 0.0f ? wz : 0x1p-60f), r->x0, r->x1), square = x * x + r->near * r->near;
     float h0 = r->y0 / sqrtf(square + r->y0 * r->y0 + 0x1p-100f), h1 = r->y1 / sqrtf(square + r->y1 * r->y1 + 0x1p-100f);
-    float part = sf_strip_share(r->x0, x, r->y0, r->y1, r->near);
+    float part = sf_rectangle_share(r->x0, x, x - r->x0, r->y0, r->y1, r->y1 - r->y0, r->near);
     u[0] = sf_unit_clamp(part / (r->share > 0.0f ? r->share : 1.0f));
     u[1] = sf_unit_clamp((wy - h0) / (h1 > h0 ? h1 - h0 : 1.0f));
 }

@@ -300,10 +300,10 @@ static inline float sf_lanczos_sample(float s) {
 static inline float sf_lanczos(float x) {
     float d = fabsf(x - 0.5f), whole = (float)(int32_t)(d < 3.0f ? d : 3.0f), sine, third, cosine;
     sf_sincos_2pi(0.5f * (d < 3.0f ? d - whole : 0.0f), &sine, &cosine);
-    sf_sincos_2pi((d < 3.0f ? 3.0f - d : 0.0f) * (1.0f / 6.0f), &third, &cosine);
+    sf_sincos_2pi((d < 1.5f ? d : d < 3.0f ? 3.0f - d : 0.0f) * (1.0f / 6.0f), &third, &cosine);
     sine = whole == 1.0f ? -sine : sine;
-    float f = 3.0f * sine * third / (SF_PI_F * SF_PI_F * (d > 0x1p-20f ? d * d : 1.0f));
-    return d > 0x1p-20f ? f : 1.0f;
+    float f = 3.0f * sine * third / (SF_PI_F * SF_PI_F * (d > 0x1p-40f ? d * d : 1.0f));
+    return d > 0x1p-40f ? f : 1.0f;
 }
 static inline float sf_lanczos_invert(float x) {
     const float *lobe = sf_lanczos_lobes;
