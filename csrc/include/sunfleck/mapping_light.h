@@ -22,7 +22,7 @@ extern "C" {
 #endif
 
 /* v at length one; the pole if it has none. */
-static inline void sf_unit_direction(const float v[3], float out[3]) {
+SF_INLINE void sf_unit_direction(const float v[3], float out[3]) {
     float square = sf_dot3(v, v), scale = square > 0.0f ? 1.0f / sqrtf(square) : 0.0f;
     out[0] = v[0] * scale;
     out[1] = v[1] * scale;
@@ -48,13 +48,13 @@ typedef struct sf_spherical_triangle {
 } sf_spherical_triangle;
 
 /* 1 + cos of an angle, given its sine as a vector: which does not cancel near pi. */
-static inline float sf_one_plus(float cosine, const float sine[3]) {
+SF_INLINE float sf_one_plus(float cosine, const float sine[3]) {
     return cosine < 0.0f ? sf_dot3(sine, sine) / (1.0f - cosine) : 1.0f + cosine;
 }
 /* The vertices seen from the origin. The products are taken of the edges before anything is
  * scaled, so that share is good to some ulp however small the triangle looks. */
-static inline void sf_spherical_triangle_init(sf_spherical_triangle *triangle, const float a[3], const float b[3],
-                                              const float c[3], const float origin[3]) {
+SF_INLINE void sf_spherical_triangle_init(sf_spherical_triangle *triangle, const float a[3], const float b[3],
+                                          const float c[3], const float origin[3]) {
     float p[3], q[3], r[3], pq[3], pr[3], base[3], side[3], direction_c[3];
     for (int k = 0; k < 3; ++k) {
         p[k] = a[k] - origin[k];
@@ -87,14 +87,14 @@ static inline void sf_spherical_triangle_init(sf_spherical_triangle *triangle, c
     triangle->rest = sf_angle_2pi(triangle->volume, -level);
 }
 /* sin of 2 pi a turns, given a + b = 1/2. */
-static inline float sf_sine_of_lesser(float a, float b) {
+SF_INLINE float sf_sine_of_lesser(float a, float b) {
     float sine, cosine;
     sf_sincos_2pi(a < b ? a : b, &sine, &cosine);
     return sine;
 }
 /* The direction of (s, t): s cuts off a sub-triangle of that share at a, by a point d of the arc
  * from a to c; t goes from b to d. */
-static inline void sf_spherical_triangle_draw(const sf_spherical_triangle *triangle, float s, float t, float w[3]) {
+SF_INLINE void sf_spherical_triangle_draw(const sf_spherical_triangle *triangle, float s, float t, float w[3]) {
     const float *a = triangle->a, *b = triangle->b, *tangent = triangle->tangent;
     float sum[3], gap[3], cut = s * triangle->share, left = (1.0f - s) * triangle->share;
     float sine_cut = sf_sine_of_lesser(cut, triangle->rest + left), sine_left = sf_sine_of_lesser(left, triangle->rest + cut);
@@ -115,7 +115,7 @@ static inline void sf_spherical_triangle_draw(const sf_spherical_triangle *trian
     sf_unit_direction(gap, w);
 }
 /* (s, t) of a direction of the triangle. */
-static inline void sf_spherical_triangle_find(const sf_spherical_triangle *triangle, const float w[3], float u[2]) {
+SF_INLINE void sf_spherical_triangle_find(const sf_spherical_triangle *triangle, const float w[3], float u[2]) {
     const float *a = triangle->a, *b = triangle->b;
     float step[3], d[3], gap[3], from_a[3];
     for (int k = 0; k < 3; ++k) step[k] = w[k] - b[k];
@@ -134,22 +134,22 @@ static inline void sf_spherical_triangle_find(const sf_spherical_triangle *trian
     u[1] = sf_unit_clamp(sf_dot3(step, step) / (drop > 0.0f ? drop : 1.0f));
 }
 
-static inline void sf_spherical_triangle_sample(float s, float t, const float a[3], const float b[3], const float c[3],
-                                                const float origin[3], float w[3]) {
+SF_INLINE void sf_spherical_triangle_sample(float s, float t, const float a[3], const float b[3], const float c[3],
+                                            const float origin[3], float w[3]) {
     sf_spherical_triangle triangle;
     SF_ASSERT_UNIT(s, t);
     sf_spherical_triangle_init(&triangle, a, b, c, origin);
     sf_spherical_triangle_draw(&triangle, s, t, w);
 }
-static inline float sf_spherical_triangle_pdf(const float w[3], const float a[3], const float b[3], const float c[3],
-                                              const float origin[3]) {
+SF_INLINE float sf_spherical_triangle_pdf(const float w[3], const float a[3], const float b[3], const float c[3],
+                                          const float origin[3]) {
     sf_spherical_triangle triangle;
     (void)w;
     sf_spherical_triangle_init(&triangle, a, b, c, origin);
     return 0.25f / (SF_PI_F * triangle.share);
 }
-static inline void sf_spherical_triangle_invert(const float w[3], const float a[3], const float b[3], const float c[3],
-                                                const float origin[3], float u[2]) {
+SF_INLINE void sf_spherical_triangle_invert(const float w[3], const float a[3], const float b[3], const float c[3],
+                                            const float origin[3], float u[2]) {
     sf_spherical_triangle triangle;
     sf_spherical_triangle_init(&triangle, a, b, c, origin);
     sf_spherical_triangle_find(&triangle, w, u);
@@ -180,7 +180,7 @@ typedef struct sf_spherical_rectangle {
  * distance `near` takes. With n / det the cotangent of half of each of its two triangles (Van
  * Oosterom & Strackee 1983), the product of (n1 + i det) and (n2 + i det) has the sum of the two as
  * its angle. */
-static inline float sf_rectangle_share(float x0, float x1, float width, float y0, float y1, float height, float near) {
+SF_INLINE float sf_rectangle_share(float x0, float x1, float width, float y0, float y1, float height, float near) {
     float yy = y0 * y1, zz = near * near;
     float r00 = sqrtf(x0 * x0 + y0 * y0 + zz), r10 = sqrtf(x1 * x1 + y0 * y0 + zz);
     float r01 = sqrtf(x0 * x0 + y1 * y1 + zz), r11 = sqrtf(x1 * x1 + y1 * y1 + zz);
@@ -191,22 +191,22 @@ static inline float sf_rectangle_share(float x0, float x1, float width, float y0
     return sf_angle_2pi(det * (n1 + n2), n1 * n2 - det * det);
 }
 /* The share of the endless strip from x on: a triangle whose third vertex is the x axis. */
-static inline float sf_strip_share(float x, float y0, float y1, float height, float near) {
+SF_INLINE float sf_strip_share(float x, float y0, float y1, float height, float near) {
     float q0 = y0 * y0 + near * near, q1 = y1 * y1 + near * near, ax = fabsf(x);
     float far0 = sqrtf(x * x + q0) + ax, far1 = sqrtf(x * x + q1) + ax;
     /* r + x, which for negative x is q / (r - x). */
     float g0 = x < 0.0f ? q0 / (far0 > 0.0f ? far0 : 1.0f) : far0, g1 = x < 0.0f ? q1 / (far1 > 0.0f ? far1 : 1.0f) : far1;
     return sf_angle_2pi(near * height, g0 * g1 + y0 * y1 + near * near);
 }
-static inline float sf_clamp_between(float x, float low, float high) {
+SF_INLINE float sf_clamp_between(float x, float low, float high) {
     x = x > low ? x : low;
     return x < high ? x : high;
 }
 
 /* The rectangle of corner a and the corners b and c beside it, (b - a) . (c - a) = 0, seen from
  * the origin. */
-static inline void sf_spherical_rectangle_init(sf_spherical_rectangle *rectangle, const float a[3], const float b[3],
-                                               const float c[3], const float origin[3]) {
+SF_INLINE void sf_spherical_rectangle_init(sf_spherical_rectangle *rectangle, const float a[3], const float b[3],
+                                           const float c[3], const float origin[3]) {
     float ex[3], ey[3], d[3], normal[3], spare[3], other[3];
     for (int k = 0; k < 3; ++k) {
         ex[k] = b[k] - a[k];
@@ -242,7 +242,7 @@ static inline void sf_spherical_rectangle_init(sf_spherical_rectangle *rectangle
     rectangle->share = near > 0.0f ? share : within;
 }
 /* The x at which the turning plane has swept s of the solid angle. */
-static inline float sf_spherical_rectangle_sweep(const sf_spherical_rectangle *r, float s) {
+SF_INLINE float sf_spherical_rectangle_sweep(const sf_spherical_rectangle *r, float s) {
     float p = r->before + s * r->share, q = r->after + (1.0f - s) * r->share, edges = r->g0 + r->g1;
     float lesser = p < q ? p : q, difference = p < q ? q - p : p - q;
     float product = sf_sine_of_lesser(p, edges + q) * sf_sine_of_lesser(q, edges + p) *
@@ -251,7 +251,7 @@ static inline float sf_spherical_rectangle_sweep(const sf_spherical_rectangle *r
     float x = across / (product > 0.0f ? 2.0f * sqrtf(product) : 0x1p-60f);
     return sf_clamp_between(copysignf(x, p - q), r->x0, r->x1);
 }
-static inline void sf_spherical_rectangle_draw(const sf_spherical_rectangle *r, float s, float t, float w[3]) {
+SF_INLINE void sf_spherical_rectangle_draw(const sf_spherical_rectangle *r, float s, float t, float w[3]) {
     float x = sf_spherical_rectangle_sweep(r, s), square = x * x + r->near * r->near;
     float d0 = sqrtf(square + r->y0 * r->y0), d1 = sqrtf(square + r->y1 * r->y1);
     /* 1 - |h| and 1 + |h| at both edges, then 1 - h and 1 + h of the sample: nothing cancels. */
@@ -263,7 +263,7 @@ static inline void sf_spherical_rectangle_draw(const sf_spherical_rectangle *r, 
     float along = root > 0.0f ? ring / root : 0.0f, wx = x * along, wz = root > 0.0f ? r->near * along : ring;
     for (int k = 0; k < 3; ++k) w[k] = (wx * r->x[k] + h * r->y[k]) + wz * r->z[k];
 }
-static inline void sf_spherical_rectangle_find(const sf_spherical_rectangle *r, const float w[3], float u[2]) {
+SF_INLINE void sf_spherical_rectangle_find(const sf_spherical_rectangle *r, const float w[3], float u[2]) {
     float wx = sf_dot3(w, r->x), wy = sf_dot3(w, r->y), wz = sf_dot3(w, r->z);
     float x = sf_clamp_between(r->near * wx / (wz > 0.0f ? wz : 0x1p-60f), r->x0, r->x1), square = x * x + r->near * r->near;
     float h0 = r->y0 / sqrtf(square + r->y0 * r->y0 + 0x1p-100f), h1 = r->y1 / sqrtf(square + r->y1 * r->y1 + 0x1p-100f);
@@ -272,22 +272,22 @@ static inline void sf_spherical_rectangle_find(const sf_spherical_rectangle *r, 
     u[1] = sf_unit_clamp((wy - h0) / (h1 > h0 ? h1 - h0 : 1.0f));
 }
 
-static inline void sf_spherical_rectangle_sample(float s, float t, const float a[3], const float b[3],
-                                                 const float c[3], const float origin[3], float w[3]) {
+SF_INLINE void sf_spherical_rectangle_sample(float s, float t, const float a[3], const float b[3],
+                                             const float c[3], const float origin[3], float w[3]) {
     sf_spherical_rectangle rectangle;
     SF_ASSERT_UNIT(s, t);
     sf_spherical_rectangle_init(&rectangle, a, b, c, origin);
     sf_spherical_rectangle_draw(&rectangle, s, t, w);
 }
-static inline float sf_spherical_rectangle_pdf(const float w[3], const float a[3], const float b[3], const float c[3],
-                                               const float origin[3]) {
+SF_INLINE float sf_spherical_rectangle_pdf(const float w[3], const float a[3], const float b[3], const float c[3],
+                                           const float origin[3]) {
     sf_spherical_rectangle rectangle;
     (void)w;
     sf_spherical_rectangle_init(&rectangle, a, b, c, origin);
     return 0.25f / (SF_PI_F * rectangle.share);
 }
-static inline void sf_spherical_rectangle_invert(const float w[3], const float a[3], const float b[3],
-                                                 const float c[3], const float origin[3], float u[2]) {
+SF_INLINE void sf_spherical_rectangle_invert(const float w[3], const float a[3], const float b[3],
+                                             const float c[3], const float origin[3], float u[2]) {
     sf_spherical_rectangle rectangle;
     sf_spherical_rectangle_init(&rectangle, a, b, c, origin);
     sf_spherical_rectangle_find(&rectangle, w, u);

@@ -21,15 +21,15 @@ extern "C" {
 /* ---- pixel: the centre is (1/2, 1/2), the pixel itself is the unit square ---- */
 
 /* Box: the unit square as it is. pdf per area: 1 inside. */
-static inline void sf_pixel_box_sample(float s, float t, float out[2]) {
+SF_INLINE void sf_pixel_box_sample(float s, float t, float out[2]) {
     SF_ASSERT_UNIT(s, t);
     out[0] = s;
     out[1] = t;
 }
-static inline float sf_pixel_box_pdf(const float x[2]) {
+SF_INLINE float sf_pixel_box_pdf(const float x[2]) {
     return (x[0] >= 0.0f) & (x[0] < 1.0f) & (x[1] >= 0.0f) & (x[1] < 1.0f) ? 1.0f : 0.0f;
 }
-static inline void sf_pixel_box_invert(const float x[2], float u[2]) {
+SF_INLINE void sf_pixel_box_invert(const float x[2], float u[2]) {
     u[0] = sf_unit_clamp(x[0]);
     u[1] = sf_unit_clamp(x[1]);
 }
@@ -37,27 +37,27 @@ static inline void sf_pixel_box_invert(const float x[2], float u[2]) {
 /* Tent, the lecture's "Shirley": two pixels wide, its range is [-1/2, 3/2] and it leaves the
  * pixel with probability 7/16. pdf per area: (1 - |x - 1/2|) (1 - |y - 1/2|), 0 on the rim,
  * which s or t below 2^-51 reach. */
-static inline float sf_tent_sample(float s) {
-    float rising = -0.5f + sqrtf(2.0f * s), falling = 1.5f - sqrtf(2.0f - 2.0f * s);
-    return s < 0.5f ? rising : falling;
+SF_INLINE float sf_tent_sample(float s) {
+    float root = sqrtf(s < 0.5f ? 2.0f * s : 2.0f - 2.0f * s);
+    return s < 0.5f ? -0.5f + root : 1.5f - root;
 }
-static inline float sf_tent_pdf(float x) {
+SF_INLINE float sf_tent_pdf(float x) {
     float height = 1.0f - fabsf(x - 0.5f);
     return height > 0.0f ? height : 0.0f;
 }
-static inline float sf_tent_invert(float x) {
+SF_INLINE float sf_tent_invert(float x) {
     float left = x + 0.5f, right = 1.5f - x;
     left = left > 0.0f ? left : 0.0f;
     right = right > 0.0f ? right : 0.0f;
     return sf_unit_clamp(x < 0.5f ? 0.5f * left * left : 1.0f - 0.5f * right * right);
 }
-static inline void sf_pixel_tent_sample(float s, float t, float out[2]) {
+SF_INLINE void sf_pixel_tent_sample(float s, float t, float out[2]) {
     SF_ASSERT_UNIT(s, t);
     out[0] = sf_tent_sample(s);
     out[1] = sf_tent_sample(t);
 }
-static inline float sf_pixel_tent_pdf(const float x[2]) { return sf_tent_pdf(x[0]) * sf_tent_pdf(x[1]); }
-static inline void sf_pixel_tent_invert(const float x[2], float u[2]) {
+SF_INLINE float sf_pixel_tent_pdf(const float x[2]) { return sf_tent_pdf(x[0]) * sf_tent_pdf(x[1]); }
+SF_INLINE void sf_pixel_tent_invert(const float x[2], float u[2]) {
     u[0] = sf_tent_invert(x[0]);
     u[1] = sf_tent_invert(x[1]);
 }
@@ -66,18 +66,18 @@ static inline void sf_pixel_tent_invert(const float x[2], float u[2]) {
  * though the lecture has it within the pixel: 38 % of samples leave it at mu = 0.4. log(1 - s)
  * in place of log s, so that s = 0 gives the centre and not infinity; the farthest sample lies
  * 5.77 mu away. pdf per area: exp(-r^2 / 2 mu^2) / (2 pi mu^2). */
-static inline void sf_pixel_gaussian_sample(float s, float t, float mu, float out[2]) {
+SF_INLINE void sf_pixel_gaussian_sample(float s, float t, float mu, float out[2]) {
     SF_ASSERT_UNIT(s, t);
     float sine, cosine, a = mu * sqrtf(-2.0f * sf_log1m(s));
     sf_sincos_2pi(t, &sine, &cosine);
     out[0] = 0.5f + a * sine;
     out[1] = 0.5f + a * cosine;
 }
-static inline float sf_pixel_gaussian_pdf(const float x[2], float mu) {
+SF_INLINE float sf_pixel_gaussian_pdf(const float x[2], float mu) {
     float dx = (x[0] - 0.5f) / mu, dy = (x[1] - 0.5f) / mu;
     return sf_exp(-0.5f * (dx * dx + dy * dy)) / (2.0f * SF_PI_F * (mu * mu));
 }
-static inline void sf_pixel_gaussian_invert(const float x[2], float mu, float u[2]) {
+SF_INLINE void sf_pixel_gaussian_invert(const float x[2], float mu, float u[2]) {
     float dx = (x[0] - 0.5f) / mu, dy = (x[1] - 0.5f) / mu;
     u[0] = sf_unit_clamp(-sf_expm1(-0.5f * (dx * dx + dy * dy)));
     u[1] = sf_angle_2pi(dx, dy);
@@ -85,11 +85,11 @@ static inline void sf_pixel_gaussian_invert(const float x[2], float mu, float u[
 
 /* Gaussian, cut at `radius` and renormalized: the same as pixel_gaussian, with s taken of the
  * share that lies within. mu 1e-6 .. 1e6; radius 1e-6 .. 1e6 and at least mu / 1000. */
-static inline float sf_gaussian_share(float mu, float radius) {
+SF_INLINE float sf_gaussian_share(float mu, float radius) {
     float reach = radius / mu;
     return -sf_expm1(-0.5f * (reach * reach));
 }
-static inline void sf_pixel_gaussian_truncated_sample(float s, float t, float mu, float radius, float out[2]) {
+SF_INLINE void sf_pixel_gaussian_truncated_sample(float s, float t, float mu, float radius, float out[2]) {
     SF_ASSERT_UNIT(s, t);
     float sine, cosine, a = mu * sqrtf(-2.0f * sf_log1m(s * sf_gaussian_share(mu, radius)));
     a = a < radius ? a : radius;
@@ -99,12 +99,12 @@ static inline void sf_pixel_gaussian_truncated_sample(float s, float t, float mu
 }
 /* pdf per area: exp(-r^2 / 2 mu^2) / (2 pi mu^2 (1 - exp(-radius^2 / 2 mu^2))) within the radius
  * and the rounding of a sample's place. */
-static inline float sf_pixel_gaussian_truncated_pdf(const float x[2], float mu, float radius) {
+SF_INLINE float sf_pixel_gaussian_truncated_pdf(const float x[2], float mu, float radius) {
     float dx = x[0] - 0.5f, dy = x[1] - 0.5f, slack = radius * 0x1p-21f + 0x1p-23f, outer = radius + slack;
     float inside = dx * dx + dy * dy <= outer * outer ? 1.0f : 0.0f;
     return inside * sf_pixel_gaussian_pdf(x, mu) / sf_gaussian_share(mu, radius);
 }
-static inline void sf_pixel_gaussian_truncated_invert(const float x[2], float mu, float radius, float u[2]) {
+SF_INLINE void sf_pixel_gaussian_truncated_invert(const float x[2], float mu, float radius, float u[2]) {
     sf_pixel_gaussian_invert(x, mu, u);
     u[0] = sf_unit_clamp(u[0] / sf_gaussian_share(mu, radius));
 }
@@ -118,7 +118,7 @@ static inline void sf_pixel_gaussian_truncated_invert(const float x[2], float mu
 /* The 4-term Blackman-Harris window (Harris 1978, minimum sidelobes), 0 < radius. Its density at
  * p of the whole width from the rim: a0 - a1 cos(2 pi p) + a2 cos(4 pi p) - a3 cos(6 pi p), here by
  * powers of y = sin^2(pi p), all of whose terms are positive. */
-static inline float sf_blackman_harris(float p, float *integral) {
+SF_INLINE float sf_blackman_harris(float p, float *integral) {
     float sine, cosine;
     sf_sincos_2pi(0.5f * p, &sine, &cosine);
     float y = sine * sine, product = sine * cosine;
@@ -129,13 +129,13 @@ static inline float sf_blackman_harris(float p, float *integral) {
     *integral = 0.00006f * p + (0.05658f * first + (0.5696f * second + 0.37376f * third));
     return 0.00006f + y * (0.05658f + y * (0.5696f + y * 0.37376f));
 }
-static inline float sf_blackman_harris_step(float p, float mass) {
+SF_INLINE float sf_blackman_harris_step(float p, float mass) {
     float integral, density = sf_blackman_harris(p, &integral);
     p -= (integral - mass) / density;
     p = p > 0.0f ? p : 0.0f;
     return p < 0.5f ? p : 0.5f;
 }
-static inline float sf_blackman_harris_sample(float s, float radius) {
+SF_INLINE float sf_blackman_harris_sample(float s, float radius) {
     float tail = s < 0.5f ? s : 1.0f - s, mass = 0.35875f * tail, p = 0.5f * sqrtf(sqrtf(2.0f * tail));
     p = sf_blackman_harris_step(p, mass);
     p = sf_blackman_harris_step(p, mass);
@@ -145,29 +145,29 @@ static inline float sf_blackman_harris_sample(float s, float radius) {
     return 0.5f + copysignf((1.0f - 2.0f * p) * radius, s - 0.5f);
 }
 /* p of a place; 0 at the rim, negative outside. */
-static inline float sf_blackman_harris_place(float x, float radius) {
+SF_INLINE float sf_blackman_harris_place(float x, float radius) {
     return 0.5f - 0.5f * (fabsf(x - 0.5f) / radius);
 }
-static inline float sf_blackman_harris_pdf(float x, float radius) {
+SF_INLINE float sf_blackman_harris_pdf(float x, float radius) {
     float p = sf_blackman_harris_place(x, radius), integral, density = sf_blackman_harris(p > 0.0f ? p : 0.0f, &integral);
     return p >= -0x1p-22f - 0x1p-24f / radius ? density * (0.5f / 0.35875f) / radius : 0.0f;
 }
-static inline float sf_blackman_harris_invert(float x, float radius) {
+SF_INLINE float sf_blackman_harris_invert(float x, float radius) {
     float p = sf_blackman_harris_place(x, radius), integral;
     (void)sf_blackman_harris(p > 0.0f ? p : 0.0f, &integral);
     float tail = integral * (1.0f / 0.35875f);
     return sf_unit_clamp(x < 0.5f ? tail : 1.0f - tail);
 }
 /* radius 1e-3 .. 1e3; never 0 within it: the rim has 1.7e-4 of the centre's density. */
-static inline void sf_pixel_blackman_harris_sample(float s, float t, float radius, float out[2]) {
+SF_INLINE void sf_pixel_blackman_harris_sample(float s, float t, float radius, float out[2]) {
     SF_ASSERT_UNIT(s, t);
     out[0] = sf_blackman_harris_sample(s, radius);
     out[1] = sf_blackman_harris_sample(t, radius);
 }
-static inline float sf_pixel_blackman_harris_pdf(const float x[2], float radius) {
+SF_INLINE float sf_pixel_blackman_harris_pdf(const float x[2], float radius) {
     return sf_blackman_harris_pdf(x[0], radius) * sf_blackman_harris_pdf(x[1], radius);
 }
-static inline void sf_pixel_blackman_harris_invert(const float x[2], float radius, float u[2]) {
+SF_INLINE void sf_pixel_blackman_harris_invert(const float x[2], float radius, float u[2]) {
     u[0] = sf_blackman_harris_invert(x[0], radius);
     u[1] = sf_blackman_harris_invert(x[1], radius);
 }
@@ -180,13 +180,13 @@ typedef struct sf_mitchell_piece {
     float top;        /* v of the piece's other end */
     int inner;        /* within 8/7: for v > 1/7 the middle polynomial holds */
 } sf_mitchell_piece;
-static inline sf_mitchell_piece sf_mitchell_piece_of(int inner, int rim) {
+SF_INLINE sf_mitchell_piece sf_mitchell_piece_of(int inner, int rim) {
     const float w = 6.0f / 7.0f;
     sf_mitchell_piece piece = {rim ? 0.0f : 0.5f * w * w, inner ? 2.0f / 3.0f * w : rim ? w / 3.0f : -2.0f / 3.0f * w,
                                rim ? -0.25f : 0.25f, inner ? 8.0f / 7.0f : w, inner};
     return piece;
 }
-static inline float sf_mitchell_integral(const sf_mitchell_piece *piece, float v, float *density) {
+SF_INLINE float sf_mitchell_integral(const sf_mitchell_piece *piece, float v, float *density) {
     float x = 8.0f / 7.0f - v, integral = 7.0f / 18.0f * v * v * (piece->k2 + v * (piece->k3 + v * piece->k4));
     float middle = 355.0f / 686.0f - x * (8.0f / 9.0f + x * x * (-2.0f / 3.0f + 7.0f / 24.0f * x));
     int is_middle = piece->inner & (v > 1.0f / 7.0f);
@@ -194,13 +194,13 @@ static inline float sf_mitchell_integral(const sf_mitchell_piece *piece, float v
                          : 7.0f / 18.0f * v * (2.0f * piece->k2 + v * (3.0f * piece->k3 + 4.0f * piece->k4 * v));
     return is_middle ? middle : integral;
 }
-static inline float sf_mitchell_step(const sf_mitchell_piece *piece, float v, float mass) {
+SF_INLINE float sf_mitchell_step(const sf_mitchell_piece *piece, float v, float mass) {
     float density, off = sf_mitchell_integral(piece, v, &density) - mass;
     v -= off / (density > 0x1p-100f ? density : 0x1p-100f);
     v = v > 0.0f ? v : 0.0f;
     return v < piece->top ? v : piece->top;
 }
-static inline float sf_mitchell_sample(float s) {
+SF_INLINE float sf_mitchell_sample(float s) {
     const float lobe = 6.0f / 343.0f, w = 6.0f / 7.0f;
     float r = (s < 0.5f ? s : 1.0f - s) * (367.0f / 343.0f);
     int inner = r >= lobe, rim = r < 0.5f * lobe;
@@ -216,12 +216,12 @@ static inline float sf_mitchell_sample(float s) {
     return 0.5f + copysignf(inner ? 8.0f / 7.0f - v : rim ? 2.0f - v : 8.0f / 7.0f + v, s - 0.5f);
 }
 /* The filter itself. */
-static inline float sf_mitchell(float x) {
+SF_INLINE float sf_mitchell(float x) {
     float d = fabsf(x - 0.5f), e = 2.0f - d, outer = 7.0f / 18.0f * (e * e) * (8.0f / 7.0f - d);
     float middle = 8.0f / 9.0f + d * d * (7.0f / 6.0f * d - 2.0f);
     return d < 1.0f ? middle : d < 2.0f ? outer : 0.0f;
 }
-static inline float sf_mitchell_invert(float x) {
+SF_INLINE float sf_mitchell_invert(float x) {
     const float lobe = 6.0f / 343.0f;
     float d = fabsf(x - 0.5f), density;
     int inner = d < 8.0f / 7.0f, rim = d > 1.6f;
@@ -230,21 +230,21 @@ static inline float sf_mitchell_invert(float x) {
     float tail = (inner ? lobe + mass : rim ? mass : lobe - mass) * (343.0f / 367.0f);
     return sf_unit_clamp(x < 0.5f ? tail : 1.0f - tail);
 }
-static inline void sf_pixel_mitchell_sample(float s, float t, float out[2]) {
+SF_INLINE void sf_pixel_mitchell_sample(float s, float t, float out[2]) {
     SF_ASSERT_UNIT(s, t);
     out[0] = sf_mitchell_sample(s);
     out[1] = sf_mitchell_sample(t);
 }
 /* pdf per area: |f(x) f(y)| (343/367)^2; 0 at the filter's zeros: the rim, and 8/7 from the centre. */
-static inline float sf_pixel_mitchell_pdf(const float x[2]) {
+SF_INLINE float sf_pixel_mitchell_pdf(const float x[2]) {
     return fabsf(sf_mitchell(x[0]) * sf_mitchell(x[1])) * (343.0f * 343.0f / (367.0f * 367.0f));
 }
-static inline void sf_pixel_mitchell_invert(const float x[2], float u[2]) {
+SF_INLINE void sf_pixel_mitchell_invert(const float x[2], float u[2]) {
     u[0] = sf_mitchell_invert(x[0]);
     u[1] = sf_mitchell_invert(x[1]);
 }
 /* +-(367/343)^2 = +-1.145. */
-static inline float sf_pixel_mitchell_weight(const float x[2]) {
+SF_INLINE float sf_pixel_mitchell_weight(const float x[2]) {
     return copysignf(367.0f * 367.0f / (343.0f * 343.0f), sf_mitchell(x[0]) * sf_mitchell(x[1]));
 }
 
@@ -253,11 +253,11 @@ typedef struct sf_lanczos_piece {
     float k[SF_LANCZOS_TERMS_F]; /* the integral over v: v^2 (k0 + k1 v + ...) */
     float top;                   /* no v of the piece is larger */
 } sf_lanczos_piece;
-static inline void sf_lanczos_piece_init(sf_lanczos_piece *piece, int row) {
+SF_INLINE void sf_lanczos_piece_init(sf_lanczos_piece *piece, int row) {
     for (int i = 0; i < SF_LANCZOS_TERMS_F; ++i) piece->k[i] = sf_lanczos_table[row][i];
     piece->top = row == 0 ? 1.0f : row == 4 ? 0.7f : 0.6f;
 }
-static inline float sf_lanczos_integral(const sf_lanczos_piece *piece, float v, float *density) {
+SF_INLINE float sf_lanczos_integral(const sf_lanczos_piece *piece, float v, float *density) {
     float p = piece->k[SF_LANCZOS_TERMS_F - 1], slope = 0.0f;
     for (int i = SF_LANCZOS_TERMS_F - 2; i >= 0; --i) {
         slope = slope * v + p;
@@ -266,21 +266,21 @@ static inline float sf_lanczos_integral(const sf_lanczos_piece *piece, float v, 
     *density = v * (2.0f * p + v * slope);
     return v * v * p;
 }
-static inline float sf_lanczos_step(const sf_lanczos_piece *piece, float v, float mass) {
+SF_INLINE float sf_lanczos_step(const sf_lanczos_piece *piece, float v, float mass) {
     float density, off = sf_lanczos_integral(piece, v, &density) - mass;
     v -= off / (density > 0x1p-100f ? density : 0x1p-100f);
     v = v > 0.0f ? v : 0.0f;
     return v < piece->top ? v : piece->top;
 }
 /* The row of the table for a mass from the rim, and the mass from that row's zero. */
-static inline int sf_lanczos_find(float r, float *mass) {
+SF_INLINE int sf_lanczos_find(float r, float *mass) {
     const float *lobe = sf_lanczos_lobes;
     float second = r - lobe[2], first = second - lobe[1];
     int row = r < 0.5f * lobe[2] ? 4 : second < 0.0f ? 3 : second < 0.5f * lobe[1] ? 2 : first < 0.0f ? 1 : 0;
     *mass = row == 4 ? r : row == 3 ? -second : row == 2 ? second : row == 1 ? -first : first;
     return row;
 }
-static inline float sf_lanczos_sample(float s) {
+SF_INLINE float sf_lanczos_sample(float s) {
     const float *lobe = sf_lanczos_lobes;
     float mass, r = (s < 0.5f ? s : 1.0f - s) * (2.0f * (lobe[0] + lobe[1] + lobe[2]));
     int row = sf_lanczos_find(r, &mass);
@@ -297,7 +297,7 @@ static inline float sf_lanczos_sample(float s) {
     return 0.5f + copysignf(distance, s - 0.5f);
 }
 /* The filter itself; sin(pi d) from what is left to the nearest zero. */
-static inline float sf_lanczos(float x) {
+SF_INLINE float sf_lanczos(float x) {
     float d = fabsf(x - 0.5f), whole = (float)(int32_t)(d < 3.0f ? d : 3.0f), sine, third, cosine;
     sf_sincos_2pi(0.5f * (d < 3.0f ? d - whole : 0.0f), &sine, &cosine);
     sf_sincos_2pi((d < 1.5f ? d : d < 3.0f ? 3.0f - d : 0.0f) * (1.0f / 6.0f), &third, &cosine);
@@ -305,7 +305,7 @@ static inline float sf_lanczos(float x) {
     float f = 3.0f * sine * third / (SF_PI_F * SF_PI_F * (d > 0x1p-40f ? d * d : 1.0f));
     return d > 0x1p-40f ? f : 1.0f;
 }
-static inline float sf_lanczos_invert(float x) {
+SF_INLINE float sf_lanczos_invert(float x) {
     const float *lobe = sf_lanczos_lobes;
     float d = fabsf(x - 0.5f), density;
     int row = d < 1.0f ? 0 : d < 1.5f ? 1 : d < 2.0f ? 2 : d < 2.5f ? 3 : 4;
@@ -318,24 +318,24 @@ static inline float sf_lanczos_invert(float x) {
     float tail = r / (2.0f * (lobe[0] + lobe[1] + lobe[2]));
     return sf_unit_clamp(x < 0.5f ? tail : 1.0f - tail);
 }
-static inline void sf_pixel_lanczos_sample(float s, float t, float out[2]) {
+SF_INLINE void sf_pixel_lanczos_sample(float s, float t, float out[2]) {
     SF_ASSERT_UNIT(s, t);
     out[0] = sf_lanczos_sample(s);
     out[1] = sf_lanczos_sample(t);
 }
 /* pdf per area: |f(x) f(y)| over the square of the integral of |f|; 0 at the filter's zeros: 1, 2 and
  * 3 from the centre. */
-static inline float sf_pixel_lanczos_pdf(const float x[2]) {
+SF_INLINE float sf_pixel_lanczos_pdf(const float x[2]) {
     const float *lobe = sf_lanczos_lobes;
     float scale = 0.5f / (lobe[0] + lobe[1] + lobe[2]);
     return fabsf(sf_lanczos(x[0]) * sf_lanczos(x[1])) * (scale * scale);
 }
-static inline void sf_pixel_lanczos_invert(const float x[2], float u[2]) {
+SF_INLINE void sf_pixel_lanczos_invert(const float x[2], float u[2]) {
     u[0] = sf_lanczos_invert(x[0]);
     u[1] = sf_lanczos_invert(x[1]);
 }
 /* +-1.845: the square of the integral of |f| over that of f. */
-static inline float sf_pixel_lanczos_weight(const float x[2]) {
+SF_INLINE float sf_pixel_lanczos_weight(const float x[2]) {
     const float *lobe = sf_lanczos_lobes;
     float ratio = (lobe[0] + lobe[1] + lobe[2]) / (lobe[0] - lobe[1] + lobe[2]);
     return copysignf(ratio * ratio, sf_lanczos(x[0]) * sf_lanczos(x[1]));
