@@ -30,7 +30,7 @@ RULES = [
     (r"\b(sqrt|fabs|copysign)f\b", r"\1"),
     (r"\b(0x[0-9a-f.]+p[-+]?\d+|\d+\.?\d*(?:e[-+]?\d+)?)f\b", r"\1"),
     (r"\b(SF_PI|SF_UNIT_MAX|SF_LANCZOS_TERMS)_F\b", r"\1"),
-    (r"\b(sf_(?:mitchell_piece|lanczos_piece|lanczos_table|lanczos_lobes))\b", r"\1_f64"),
+    (r"\b(sf_lanczos_(?:table|lobes))\b", r"\1_f64"),
     (r"\b(sf_spherical_(?:triangle|rectangle))\b(?!\()", r"\1_f64"),
     (r"\b(sf_\w+)\(", r"\1_f64("),
     (r"[ \t]+\n", "\n"),

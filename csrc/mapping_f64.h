@@ -143,45 +143,38 @@ SF_INLINE void sf_pixel_blackman_harris_invert_f64(const double x[2], double rad
     u[1] = sf_blackman_harris_invert_f64(x[1], radius);
 }
 
-typedef struct sf_mitchell_piece_f64 {
-    double k2, k3, k4;
-    double top;
-    int inner;
-} sf_mitchell_piece_f64;
-SF_INLINE sf_mitchell_piece_f64 sf_mitchell_piece_of_f64(int inner, int rim) {
-    const double w = 6.0 / 7.0;
-    sf_mitchell_piece_f64 piece = {rim ? 0.0 : 0.5 * w * w, inner ? 2.0 / 3.0 * w : rim ? w / 3.0 : -2.0 / 3.0 * w,
-                               rim ? -0.25 : 0.25, inner ? 8.0 / 7.0 : w, inner};
-    return piece;
-}
-SF_INLINE double sf_mitchell_integral_f64(const sf_mitchell_piece_f64 *piece, double v, double *density) {
-    double x = 8.0 / 7.0 - v, integral = 7.0 / 18.0 * v * v * (piece->k2 + v * (piece->k3 + v * piece->k4));
+SF_INLINE double sf_mitchell_integral_f64(int row, double v, double *density) {
+    static const double k2[3] = {0.0, 18.0 / 49.0, 18.0 / 49.0};
+    static const double k3[3] = {2.0 / 7.0, -4.0 / 7.0, 4.0 / 7.0}, k4[3] = {-0.25, 0.25, 0.25};
+    static const double ends[3] = {4.0, 4.0, 1.0 / 7.0};
+    double x = 8.0 / 7.0 - v, outer = 7.0 / 18.0 * v * v * (k2[row] + v * (k3[row] + v * k4[row]));
+    double slope = 7.0 / 18.0 * v * (2.0 * k2[row] + v * (3.0 * k3[row] + 4.0 * k4[row] * v));
     double middle = 355.0 / 686.0 - x * (8.0 / 9.0 + x * x * (-2.0 / 3.0 + 7.0 / 24.0 * x));
-    int is_middle = piece->inner & (v > 1.0 / 7.0);
-    *density = is_middle ? 8.0 / 9.0 + x * x * (7.0 / 6.0 * x - 2.0)
-                         : 7.0 / 18.0 * v * (2.0 * piece->k2 + v * (3.0 * piece->k3 + 4.0 * piece->k4 * v));
-    return is_middle ? middle : integral;
+    double height = 8.0 / 9.0 + x * x * (7.0 / 6.0 * x - 2.0);
+    *density = v > ends[row] ? height : slope;
+    return v > ends[row] ? middle : outer;
 }
-SF_INLINE double sf_mitchell_step_f64(const sf_mitchell_piece_f64 *piece, double v, double mass) {
-    double density, off = sf_mitchell_integral_f64(piece, v, &density) - mass;
+SF_INLINE double sf_mitchell_step_f64(int row, double v, double mass) {
+    static const double top[3] = {6.0 / 7.0, 6.0 / 7.0, 8.0 / 7.0};
+    double density, off = sf_mitchell_integral_f64(row, v, &density) - mass;
     v -= off / (density > 0x1p-100 ? density : 0x1p-100);
     v = v > 0.0 ? v : 0.0;
-    return v < piece->top ? v : piece->top;
+    return v < top[row] ? v : top[row];
 }
 SF_INLINE double sf_mitchell_sample_f64(double s) {
-    const double lobe = 6.0 / 343.0, w = 6.0 / 7.0;
+    static const double start[3] = {0.0, 6.0 / 343.0, -6.0 / 343.0}, turn[3] = {1.0, -1.0, 1.0};
+    static const double rough[3] = {9.0, 7.0, 64.0 / 49.0 * 686.0 / 355.0};
+    static const double origin[3] = {2.0, 8.0 / 7.0, 8.0 / 7.0}, side[3] = {-1.0, 1.0, -1.0};
     double r = (s < 0.5 ? s : 1.0 - s) * (367.0 / 343.0);
-    int inner = r >= lobe, rim = r < 0.5 * lobe;
-    sf_mitchell_piece_f64 piece = sf_mitchell_piece_of_f64(inner, rim);
-    double mass = inner ? r - lobe : rim ? r : lobe - r;
-    double root = sqrt(mass * (inner ? 64.0 / 49.0 * 686.0 / 355.0 : 36.0 / 7.0 / (w * w)));
-    double v = rim ? sf_cbrt_rough_f64(mass * (54.0 / 7.0 / w)) : root < piece.top ? root : piece.top;
-    v = sf_mitchell_step_f64(&piece, v, mass);
-    v = sf_mitchell_step_f64(&piece, v, mass);
-    v = sf_mitchell_step_f64(&piece, v, mass);
-    v = sf_mitchell_step_f64(&piece, v, mass);
-    v = sf_mitchell_step_f64(&piece, v, mass);
-    return 0.5 + copysign(inner ? 8.0 / 7.0 - v : rim ? 2.0 - v : 8.0 / 7.0 + v, s - 0.5);
+    int row = (r >= 3.0 / 343.0) + (r >= 6.0 / 343.0);
+    double mass = start[row] + turn[row] * r, scaled = mass * rough[row];
+    double cube = sf_cbrt_rough_f64(scaled), root = sqrt(scaled), v = row == 0 ? cube : root;
+    v = sf_mitchell_step_f64(row, v, mass);
+    v = sf_mitchell_step_f64(row, v, mass);
+    v = sf_mitchell_step_f64(row, v, mass);
+    v = sf_mitchell_step_f64(row, v, mass);
+    v = sf_mitchell_step_f64(row, v, mass);
+    return 0.5 + copysign(origin[row] + side[row] * v, s - 0.5);
 }
 
 SF_INLINE double sf_mitchell_f64(double x) {
@@ -190,12 +183,12 @@ SF_INLINE double sf_mitchell_f64(double x) {
     return d < 1.0 ? middle : d < 2.0 ? outer : 0.0;
 }
 SF_INLINE double sf_mitchell_invert_f64(double x) {
-    const double lobe = 6.0 / 343.0;
+    static const double start[3] = {0.0, 6.0 / 343.0, 6.0 / 343.0}, turn[3] = {1.0, -1.0, 1.0};
+    static const double origin[3] = {2.0, 8.0 / 7.0, 8.0 / 7.0}, side[3] = {-1.0, 1.0, -1.0};
     double d = fabs(x - 0.5), density;
-    int inner = d < 8.0 / 7.0, rim = d > 1.6;
-    sf_mitchell_piece_f64 piece = sf_mitchell_piece_of_f64(inner, rim);
-    double v = rim ? 2.0 - d : fabs(d - 8.0 / 7.0), mass = sf_mitchell_integral_f64(&piece, v > 0.0 ? v : 0.0, &density);
-    double tail = (inner ? lobe + mass : rim ? mass : lobe - mass) * (343.0 / 367.0);
+    int row = (d <= 1.6) + (d < 8.0 / 7.0);
+    double v = side[row] * (d - origin[row]), mass = sf_mitchell_integral_f64(row, v > 0.0 ? v : 0.0, &density);
+    double tail = (start[row] + turn[row] * mass) * (343.0 / 367.0);
     return sf_unit_clamp_f64(x < 0.5 ? tail : 1.0 - tail);
 }
 SF_INLINE void sf_pixel_mitchell_sample_f64(double s, double t, double out[2]) {
@@ -216,73 +209,59 @@ SF_INLINE double sf_pixel_mitchell_weight_f64(const double x[2]) {
     return copysign(367.0 * 367.0 / (343.0 * 343.0), sf_mitchell_f64(x[0]) * sf_mitchell_f64(x[1]));
 }
 
-typedef struct sf_lanczos_piece_f64 {
-    double k[SF_LANCZOS_TERMS];
-    double top;
-} sf_lanczos_piece_f64;
-SF_INLINE void sf_lanczos_piece_init_f64(sf_lanczos_piece_f64 *piece, int row) {
-    for (int i = 0; i < SF_LANCZOS_TERMS; ++i) piece->k[i] = sf_lanczos_table_f64[row][i];
-    piece->top = row == 0 ? 1.0 : row == 4 ? 0.7 : 0.6;
-}
-SF_INLINE double sf_lanczos_integral_f64(const sf_lanczos_piece_f64 *piece, double v, double *density) {
-    double p = piece->k[SF_LANCZOS_TERMS - 1], slope = 0.0;
+SF_INLINE double sf_lanczos_integral_f64(int row, double v, double *density) {
+    double p = sf_lanczos_table_f64[row][SF_LANCZOS_TERMS - 1], slope = 0.0;
     for (int i = SF_LANCZOS_TERMS - 2; i >= 0; --i) {
         slope = slope * v + p;
-        p = p * v + piece->k[i];
+        p = p * v + sf_lanczos_table_f64[row][i];
     }
     *density = v * (2.0 * p + v * slope);
     return v * v * p;
 }
-SF_INLINE double sf_lanczos_step_f64(const sf_lanczos_piece_f64 *piece, double v, double mass) {
-    double density, off = sf_lanczos_integral_f64(piece, v, &density) - mass;
+SF_INLINE double sf_lanczos_step_f64(int row, double v, double mass) {
+    static const double top[5] = {1.0, 0.6, 0.6, 0.6, 0.7};
+    double density, off = sf_lanczos_integral_f64(row, v, &density) - mass;
     v -= off / (density > 0x1p-100 ? density : 0x1p-100);
     v = v > 0.0 ? v : 0.0;
-    return v < piece->top ? v : piece->top;
-}
-
-SF_INLINE int sf_lanczos_find_f64(double r, double *mass) {
-    const double *lobe = sf_lanczos_lobes_f64;
-    double second = r - lobe[2], first = second - lobe[1];
-    int row = r < 0.5 * lobe[2] ? 4 : second < 0.0 ? 3 : second < 0.5 * lobe[1] ? 2 : first < 0.0 ? 1 : 0;
-    *mass = row == 4 ? r : row == 3 ? -second : row == 2 ? second : row == 1 ? -first : first;
-    return row;
+    return v < top[row] ? v : top[row];
 }
 SF_INLINE double sf_lanczos_sample_f64(double s) {
+    static const double turn[5] = {1.0, -1.0, 1.0, -1.0, 1.0};
+    static const double origin[5] = {1.0, 1.0, 2.0, 2.0, 3.0}, side[5] = {-1.0, 1.0, -1.0, 1.0, -1.0};
+    static const double rough[5] = {1.75, 2.42, 9.67, 9.67, 27.0};
     const double *lobe = sf_lanczos_lobes_f64;
-    double mass, r = (s < 0.5 ? s : 1.0 - s) * (2.0 * (lobe[0] + lobe[1] + lobe[2]));
-    int row = sf_lanczos_find_f64(r, &mass);
-    sf_lanczos_piece_f64 piece;
-    sf_lanczos_piece_init_f64(&piece, row);
-    double cube = sf_cbrt_rough_f64(mass * 27.0), root = sqrt(mass / (row ? piece.k[0] + 0x1p-100 : lobe[0]));
-    double v = row == 4 ? cube : root < piece.top ? root : piece.top;
-    v = sf_lanczos_step_f64(&piece, v, mass);
-    v = sf_lanczos_step_f64(&piece, v, mass);
-    v = sf_lanczos_step_f64(&piece, v, mass);
-    v = sf_lanczos_step_f64(&piece, v, mass);
-    v = sf_lanczos_step_f64(&piece, v, mass);
-    double distance = row == 0 ? 1.0 - v : row == 1 ? 1.0 + v : row == 2 ? 2.0 - v : row == 3 ? 2.0 + v : 3.0 - v;
-    return 0.5 + copysign(distance, s - 0.5);
+    double r = (s < 0.5 ? s : 1.0 - s) * (2.0 * (lobe[0] + lobe[1] + lobe[2]));
+    int row = 4 - (r >= 0.5 * lobe[2]) - (r >= lobe[2]) - (r >= lobe[2] + 0.5 * lobe[1]) - (r >= lobe[2] + lobe[1]);
+    double inside = row < 4 ? r - lobe[2] : r;
+    inside = row < 2 ? inside - lobe[1] : inside;
+    double mass = turn[row] * inside, scaled = mass * rough[row];
+    double cube = sf_cbrt_rough_f64(scaled), root = sqrt(scaled), v = row == 4 ? cube : root;
+    v = sf_lanczos_step_f64(row, v, mass);
+    v = sf_lanczos_step_f64(row, v, mass);
+    v = sf_lanczos_step_f64(row, v, mass);
+    v = sf_lanczos_step_f64(row, v, mass);
+    v = sf_lanczos_step_f64(row, v, mass);
+    return 0.5 + copysign(origin[row] + side[row] * v, s - 0.5);
 }
 
 SF_INLINE double sf_lanczos_f64(double x) {
-    double d = fabs(x - 0.5), whole = (double)(int32_t)(d < 3.0 ? d : 3.0), sine, third, cosine;
-    sf_sincos_2pi_f64(0.5 * (d < 3.0 ? d - whole : 0.0), &sine, &cosine);
-    sf_sincos_2pi_f64((d < 1.5 ? d : d < 3.0 ? 3.0 - d : 0.0) * (1.0 / 6.0), &third, &cosine);
-    sine = whole == 1.0 ? -sine : sine;
-    double f = 3.0 * sine * third / (SF_PI * SF_PI * (d > 0x1p-40 ? d * d : 1.0));
-    return d > 0x1p-40 ? f : 1.0;
+    double d = fabs(x - 0.5), inside = d < 3.0 ? d : 3.0, whole = (double)(int32_t)inside, sine, third, cosine;
+    double near = inside < 1.5 ? inside : 3.0 - inside, square = d > 0x1p-40 ? d * d : 0x1p-80;
+    sf_sincos_2pi_f64(0.5 * (inside - whole), &sine, &cosine);
+    sf_sincos_2pi_f64(near * (1.0 / 6.0), &third, &cosine);
+    double f = 3.0 / (SF_PI * SF_PI) * (sine * third / square), sign = whole == 1.0 ? -1.0 : 1.0;
+    return d > 0x1p-40 ? sign * f : 1.0;
 }
 SF_INLINE double sf_lanczos_invert_f64(double x) {
+    static const double turn[5] = {1.0, -1.0, 1.0, -1.0, 1.0}, origin[5] = {1.0, 1.0, 2.0, 2.0, 3.0};
     const double *lobe = sf_lanczos_lobes_f64;
     double d = fabs(x - 0.5), density;
-    int row = d < 1.0 ? 0 : d < 1.5 ? 1 : d < 2.0 ? 2 : d < 2.5 ? 3 : 4;
-    sf_lanczos_piece_f64 piece;
-    sf_lanczos_piece_init_f64(&piece, row);
-    double v = fabs(d - (row < 1 ? 1.0 : row < 2 ? 1.0 : row < 4 ? 2.0 : 3.0));
-    double mass = d < 3.0 ? sf_lanczos_integral_f64(&piece, v, &density) : 0.0;
-    double r = row == 4 ? mass : row == 3 ? lobe[2] - mass : row == 2 ? lobe[2] + mass : lobe[2] + lobe[1];
-    r = row == 1 ? r - mass : row == 0 ? r + mass : r;
-    double tail = r / (2.0 * (lobe[0] + lobe[1] + lobe[2]));
+    d = d < 3.0 ? d : 3.0;
+    int row = (d >= 1.0) + (d >= 1.5) + (d >= 2.0) + (d >= 2.5);
+    double mass = turn[row] * sf_lanczos_integral_f64(row, fabs(d - origin[row]), &density);
+    mass = row < 4 ? mass + lobe[2] : mass;
+    mass = row < 2 ? mass + lobe[1] : mass;
+    double tail = mass / (2.0 * (lobe[0] + lobe[1] + lobe[2]));
     return sf_unit_clamp_f64(x < 0.5 ? tail : 1.0 - tail);
 }
 SF_INLINE void sf_pixel_lanczos_sample_f64(double s, double t, double out[2]) {
@@ -631,8 +610,8 @@ SF_INLINE void sf_power_cosine_sample_f64(double s, double t, double exponent, d
 }
 
 SF_INLINE double sf_power_cosine_pdf_f64(const double w[3], double exponent) {
-    double power = sf_exp_f64(exponent * sf_log_cosine_f64(w));
-    return w[2] > 0.0 ? (exponent + 1.0) * (0.5 / SF_PI) * power : 0.0;
+    double above = w[2] > 0.0 ? 0.5 / SF_PI : 0.0;
+    return above * (exponent + 1.0) * sf_exp_f64(exponent * sf_log_cosine_f64(w));
 }
 SF_INLINE void sf_power_cosine_invert_f64(const double w[3], double exponent, double u[2]) {
     u[0] = sf_angle_2pi_f64(w[1], w[0]);

@@ -32,8 +32,8 @@ SF_INLINE void sf_power_cosine_sample(float s, float t, float exponent, float w[
 /* pdf: (exponent + 1) z^exponent / (2 pi); 0 below and on the horizon. The power is held above
  * 1.6e-38, so that the tail stays positive. */
 SF_INLINE float sf_power_cosine_pdf(const float w[3], float exponent) {
-    float power = sf_exp(exponent * sf_log_cosine(w));
-    return w[2] > 0.0f ? (exponent + 1.0f) * (0.5f / SF_PI_F) * power : 0.0f;
+    float above = w[2] > 0.0f ? 0.5f / SF_PI_F : 0.0f;
+    return above * (exponent + 1.0f) * sf_exp(exponent * sf_log_cosine(w));
 }
 SF_INLINE void sf_power_cosine_invert(const float w[3], float exponent, float u[2]) {
     u[0] = sf_angle_2pi(w[1], w[0]);

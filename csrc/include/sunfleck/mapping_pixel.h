@@ -174,46 +174,40 @@ SF_INLINE void sf_pixel_blackman_harris_invert(const float x[2], float radius, f
 
 /* Mitchell & Netravali 1988 with B = C = 1/3: radius 2, zero at 8/7, double zero at 2. With
  * w = 6/7 it is (7/18) d^2 (d - w) at d from the rim, and beside the zero (7/18) (w -+ v)^2 v. The
- * half has mass 355/686 before the zero and 6/343 behind it. */
-typedef struct sf_mitchell_piece {
-    float k2, k3, k4; /* the integral over v: (7/18) v^2 (k2 + k3 v + k4 v^2) */
-    float top;        /* v of the piece's other end */
-    int inner;        /* within 8/7: for v > 1/7 the middle polynomial holds */
-} sf_mitchell_piece;
-SF_INLINE sf_mitchell_piece sf_mitchell_piece_of(int inner, int rim) {
-    const float w = 6.0f / 7.0f;
-    sf_mitchell_piece piece = {rim ? 0.0f : 0.5f * w * w, inner ? 2.0f / 3.0f * w : rim ? w / 3.0f : -2.0f / 3.0f * w,
-                               rim ? -0.25f : 0.25f, inner ? 8.0f / 7.0f : w, inner};
-    return piece;
-}
-SF_INLINE float sf_mitchell_integral(const sf_mitchell_piece *piece, float v, float *density) {
-    float x = 8.0f / 7.0f - v, integral = 7.0f / 18.0f * v * v * (piece->k2 + v * (piece->k3 + v * piece->k4));
+ * half has mass 355/686 before the zero and 6/343 behind it. Its three pieces, by `row`: from the
+ * rim, from the zero outwards, from the zero inwards. */
+SF_INLINE float sf_mitchell_integral(int row, float v, float *density) {
+    static const float k2[3] = {0.0f, 18.0f / 49.0f, 18.0f / 49.0f}; /* (7/18) v^2 (k2 + k3 v + k4 v^2) */
+    static const float k3[3] = {2.0f / 7.0f, -4.0f / 7.0f, 4.0f / 7.0f}, k4[3] = {-0.25f, 0.25f, 0.25f};
+    static const float ends[3] = {4.0f, 4.0f, 1.0f / 7.0f}; /* from there on the middle polynomial holds */
+    float x = 8.0f / 7.0f - v, outer = 7.0f / 18.0f * v * v * (k2[row] + v * (k3[row] + v * k4[row]));
+    float slope = 7.0f / 18.0f * v * (2.0f * k2[row] + v * (3.0f * k3[row] + 4.0f * k4[row] * v));
     float middle = 355.0f / 686.0f - x * (8.0f / 9.0f + x * x * (-2.0f / 3.0f + 7.0f / 24.0f * x));
-    int is_middle = piece->inner & (v > 1.0f / 7.0f);
-    *density = is_middle ? 8.0f / 9.0f + x * x * (7.0f / 6.0f * x - 2.0f)
-                         : 7.0f / 18.0f * v * (2.0f * piece->k2 + v * (3.0f * piece->k3 + 4.0f * piece->k4 * v));
-    return is_middle ? middle : integral;
+    float height = 8.0f / 9.0f + x * x * (7.0f / 6.0f * x - 2.0f);
+    *density = v > ends[row] ? height : slope;
+    return v > ends[row] ? middle : outer;
 }
-SF_INLINE float sf_mitchell_step(const sf_mitchell_piece *piece, float v, float mass) {
-    float density, off = sf_mitchell_integral(piece, v, &density) - mass;
+SF_INLINE float sf_mitchell_step(int row, float v, float mass) {
+    static const float top[3] = {6.0f / 7.0f, 6.0f / 7.0f, 8.0f / 7.0f};
+    float density, off = sf_mitchell_integral(row, v, &density) - mass;
     v -= off / (density > 0x1p-100f ? density : 0x1p-100f);
     v = v > 0.0f ? v : 0.0f;
-    return v < piece->top ? v : piece->top;
+    return v < top[row] ? v : top[row];
 }
 SF_INLINE float sf_mitchell_sample(float s) {
-    const float lobe = 6.0f / 343.0f, w = 6.0f / 7.0f;
+    static const float start[3] = {0.0f, 6.0f / 343.0f, -6.0f / 343.0f}, turn[3] = {1.0f, -1.0f, 1.0f};
+    static const float rough[3] = {9.0f, 7.0f, 64.0f / 49.0f * 686.0f / 355.0f}; /* v^3 or v^2 over mass */
+    static const float origin[3] = {2.0f, 8.0f / 7.0f, 8.0f / 7.0f}, side[3] = {-1.0f, 1.0f, -1.0f};
     float r = (s < 0.5f ? s : 1.0f - s) * (367.0f / 343.0f);
-    int inner = r >= lobe, rim = r < 0.5f * lobe;
-    sf_mitchell_piece piece = sf_mitchell_piece_of(inner, rim);
-    float mass = inner ? r - lobe : rim ? r : lobe - r;
-    float root = sqrtf(mass * (inner ? 64.0f / 49.0f * 686.0f / 355.0f : 36.0f / 7.0f / (w * w)));
-    float v = rim ? sf_cbrt_rough(mass * (54.0f / 7.0f / w)) : root < piece.top ? root : piece.top;
-    v = sf_mitchell_step(&piece, v, mass);
-    v = sf_mitchell_step(&piece, v, mass);
-    v = sf_mitchell_step(&piece, v, mass);
-    v = sf_mitchell_step(&piece, v, mass);
-    v = sf_mitchell_step(&piece, v, mass);
-    return 0.5f + copysignf(inner ? 8.0f / 7.0f - v : rim ? 2.0f - v : 8.0f / 7.0f + v, s - 0.5f);
+    int row = (r >= 3.0f / 343.0f) + (r >= 6.0f / 343.0f);
+    float mass = start[row] + turn[row] * r, scaled = mass * rough[row];
+    float cube = sf_cbrt_rough(scaled), root = sqrtf(scaled), v = row == 0 ? cube : root;
+    v = sf_mitchell_step(row, v, mass);
+    v = sf_mitchell_step(row, v, mass);
+    v = sf_mitchell_step(row, v, mass);
+    v = sf_mitchell_step(row, v, mass);
+    v = sf_mitchell_step(row, v, mass);
+    return 0.5f + copysignf(origin[row] + side[row] * v, s - 0.5f);
 }
 /* The filter itself. */
 SF_INLINE float sf_mitchell(float x) {
@@ -222,12 +216,12 @@ SF_INLINE float sf_mitchell(float x) {
     return d < 1.0f ? middle : d < 2.0f ? outer : 0.0f;
 }
 SF_INLINE float sf_mitchell_invert(float x) {
-    const float lobe = 6.0f / 343.0f;
+    static const float start[3] = {0.0f, 6.0f / 343.0f, 6.0f / 343.0f}, turn[3] = {1.0f, -1.0f, 1.0f};
+    static const float origin[3] = {2.0f, 8.0f / 7.0f, 8.0f / 7.0f}, side[3] = {-1.0f, 1.0f, -1.0f};
     float d = fabsf(x - 0.5f), density;
-    int inner = d < 8.0f / 7.0f, rim = d > 1.6f;
-    sf_mitchell_piece piece = sf_mitchell_piece_of(inner, rim);
-    float v = rim ? 2.0f - d : fabsf(d - 8.0f / 7.0f), mass = sf_mitchell_integral(&piece, v > 0.0f ? v : 0.0f, &density);
-    float tail = (inner ? lobe + mass : rim ? mass : lobe - mass) * (343.0f / 367.0f);
+    int row = (d <= 1.6f) + (d < 8.0f / 7.0f);
+    float v = side[row] * (d - origin[row]), mass = sf_mitchell_integral(row, v > 0.0f ? v : 0.0f, &density);
+    float tail = (start[row] + turn[row] * mass) * (343.0f / 367.0f);
     return sf_unit_clamp(x < 0.5f ? tail : 1.0f - tail);
 }
 SF_INLINE void sf_pixel_mitchell_sample(float s, float t, float out[2]) {
@@ -248,74 +242,62 @@ SF_INLINE float sf_pixel_mitchell_weight(const float x[2]) {
     return copysignf(367.0f * 367.0f / (343.0f * 343.0f), sf_mitchell(x[0]) * sf_mitchell(x[1]));
 }
 
-/* Lanczos with three lobes: sinc(x) sinc(x / 3), radius 3, zeros at 1, 2 and (double) 3. */
-typedef struct sf_lanczos_piece {
-    float k[SF_LANCZOS_TERMS_F]; /* the integral over v: v^2 (k0 + k1 v + ...) */
-    float top;                   /* no v of the piece is larger */
-} sf_lanczos_piece;
-SF_INLINE void sf_lanczos_piece_init(sf_lanczos_piece *piece, int row) {
-    for (int i = 0; i < SF_LANCZOS_TERMS_F; ++i) piece->k[i] = sf_lanczos_table[row][i];
-    piece->top = row == 0 ? 1.0f : row == 4 ? 0.7f : 0.6f;
-}
-SF_INLINE float sf_lanczos_integral(const sf_lanczos_piece *piece, float v, float *density) {
-    float p = piece->k[SF_LANCZOS_TERMS_F - 1], slope = 0.0f;
+/* Lanczos with three lobes: sinc(x) sinc(x / 3), radius 3, zeros at 1, 2 and (double) 3. Its pieces
+ * are the rows of lanczos_table.h. */
+SF_INLINE float sf_lanczos_integral(int row, float v, float *density) {
+    float p = sf_lanczos_table[row][SF_LANCZOS_TERMS_F - 1], slope = 0.0f;
     for (int i = SF_LANCZOS_TERMS_F - 2; i >= 0; --i) {
         slope = slope * v + p;
-        p = p * v + piece->k[i];
+        p = p * v + sf_lanczos_table[row][i];
     }
     *density = v * (2.0f * p + v * slope);
     return v * v * p;
 }
-SF_INLINE float sf_lanczos_step(const sf_lanczos_piece *piece, float v, float mass) {
-    float density, off = sf_lanczos_integral(piece, v, &density) - mass;
+SF_INLINE float sf_lanczos_step(int row, float v, float mass) {
+    static const float top[5] = {1.0f, 0.6f, 0.6f, 0.6f, 0.7f};
+    float density, off = sf_lanczos_integral(row, v, &density) - mass;
     v -= off / (density > 0x1p-100f ? density : 0x1p-100f);
     v = v > 0.0f ? v : 0.0f;
-    return v < piece->top ? v : piece->top;
-}
-/* The row of the table for a mass from the rim, and the mass from that row's zero. */
-SF_INLINE int sf_lanczos_find(float r, float *mass) {
-    const float *lobe = sf_lanczos_lobes;
-    float second = r - lobe[2], first = second - lobe[1];
-    int row = r < 0.5f * lobe[2] ? 4 : second < 0.0f ? 3 : second < 0.5f * lobe[1] ? 2 : first < 0.0f ? 1 : 0;
-    *mass = row == 4 ? r : row == 3 ? -second : row == 2 ? second : row == 1 ? -first : first;
-    return row;
+    return v < top[row] ? v : top[row];
 }
 SF_INLINE float sf_lanczos_sample(float s) {
+    static const float turn[5] = {1.0f, -1.0f, 1.0f, -1.0f, 1.0f};
+    static const float origin[5] = {1.0f, 1.0f, 2.0f, 2.0f, 3.0f}, side[5] = {-1.0f, 1.0f, -1.0f, 1.0f, -1.0f};
+    static const float rough[5] = {1.75f, 2.42f, 9.67f, 9.67f, 27.0f}; /* v^2, at last v^3, over mass */
     const float *lobe = sf_lanczos_lobes;
-    float mass, r = (s < 0.5f ? s : 1.0f - s) * (2.0f * (lobe[0] + lobe[1] + lobe[2]));
-    int row = sf_lanczos_find(r, &mass);
-    sf_lanczos_piece piece;
-    sf_lanczos_piece_init(&piece, row);
-    float cube = sf_cbrt_rough(mass * 27.0f), root = sqrtf(mass / (row ? piece.k[0] + 0x1p-100f : lobe[0]));
-    float v = row == 4 ? cube : root < piece.top ? root : piece.top;
-    v = sf_lanczos_step(&piece, v, mass);
-    v = sf_lanczos_step(&piece, v, mass);
-    v = sf_lanczos_step(&piece, v, mass);
-    v = sf_lanczos_step(&piece, v, mass);
-    v = sf_lanczos_step(&piece, v, mass);
-    float distance = row == 0 ? 1.0f - v : row == 1 ? 1.0f + v : row == 2 ? 2.0f - v : row == 3 ? 2.0f + v : 3.0f - v;
-    return 0.5f + copysignf(distance, s - 0.5f);
+    float r = (s < 0.5f ? s : 1.0f - s) * (2.0f * (lobe[0] + lobe[1] + lobe[2]));
+    int row = 4 - (r >= 0.5f * lobe[2]) - (r >= lobe[2]) - (r >= lobe[2] + 0.5f * lobe[1]) - (r >= lobe[2] + lobe[1]);
+    /* The mass from the row's zero: r less what lies outside of it, taken off lobe by lobe. */
+    float inside = row < 4 ? r - lobe[2] : r;
+    inside = row < 2 ? inside - lobe[1] : inside;
+    float mass = turn[row] * inside, scaled = mass * rough[row];
+    float cube = sf_cbrt_rough(scaled), root = sqrtf(scaled), v = row == 4 ? cube : root;
+    v = sf_lanczos_step(row, v, mass);
+    v = sf_lanczos_step(row, v, mass);
+    v = sf_lanczos_step(row, v, mass);
+    v = sf_lanczos_step(row, v, mass);
+    v = sf_lanczos_step(row, v, mass);
+    return 0.5f + copysignf(origin[row] + side[row] * v, s - 0.5f);
 }
 /* The filter itself; sin(pi d) from what is left to the nearest zero. */
 SF_INLINE float sf_lanczos(float x) {
-    float d = fabsf(x - 0.5f), whole = (float)(int32_t)(d < 3.0f ? d : 3.0f), sine, third, cosine;
-    sf_sincos_2pi(0.5f * (d < 3.0f ? d - whole : 0.0f), &sine, &cosine);
-    sf_sincos_2pi((d < 1.5f ? d : d < 3.0f ? 3.0f - d : 0.0f) * (1.0f / 6.0f), &third, &cosine);
-    sine = whole == 1.0f ? -sine : sine;
-    float f = 3.0f * sine * third / (SF_PI_F * SF_PI_F * (d > 0x1p-40f ? d * d : 1.0f));
-    return d > 0x1p-40f ? f : 1.0f;
+    float d = fabsf(x - 0.5f), inside = d < 3.0f ? d : 3.0f, whole = (float)(int32_t)inside, sine, third, cosine;
+    float near = inside < 1.5f ? inside : 3.0f - inside, square = d > 0x1p-40f ? d * d : 0x1p-80f;
+    sf_sincos_2pi(0.5f * (inside - whole), &sine, &cosine);
+    sf_sincos_2pi(near * (1.0f / 6.0f), &third, &cosine);
+    float f = 3.0f / (SF_PI_F * SF_PI_F) * (sine * third / square), sign = whole == 1.0f ? -1.0f : 1.0f;
+    return d > 0x1p-40f ? sign * f : 1.0f;
 }
 SF_INLINE float sf_lanczos_invert(float x) {
+    static const float turn[5] = {1.0f, -1.0f, 1.0f, -1.0f, 1.0f}, origin[5] = {1.0f, 1.0f, 2.0f, 2.0f, 3.0f};
     const float *lobe = sf_lanczos_lobes;
     float d = fabsf(x - 0.5f), density;
-    int row = d < 1.0f ? 0 : d < 1.5f ? 1 : d < 2.0f ? 2 : d < 2.5f ? 3 : 4;
-    sf_lanczos_piece piece;
-    sf_lanczos_piece_init(&piece, row);
-    float v = fabsf(d - (row < 1 ? 1.0f : row < 2 ? 1.0f : row < 4 ? 2.0f : 3.0f));
-    float mass = d < 3.0f ? sf_lanczos_integral(&piece, v, &density) : 0.0f;
-    float r = row == 4 ? mass : row == 3 ? lobe[2] - mass : row == 2 ? lobe[2] + mass : lobe[2] + lobe[1];
-    r = row == 1 ? r - mass : row == 0 ? r + mass : r;
-    float tail = r / (2.0f * (lobe[0] + lobe[1] + lobe[2]));
+    d = d < 3.0f ? d : 3.0f;
+    int row = (d >= 1.0f) + (d >= 1.5f) + (d >= 2.0f) + (d >= 2.5f);
+    float mass = turn[row] * sf_lanczos_integral(row, fabsf(d - origin[row]), &density);
+    mass = row < 4 ? mass + lobe[2] : mass;
+    mass = row < 2 ? mass + lobe[1] : mass;
+    float tail = mass / (2.0f * (lobe[0] + lobe[1] + lobe[2]));
     return sf_unit_clamp(x < 0.5f ? tail : 1.0f - tail);
 }
 SF_INLINE void sf_pixel_lanczos_sample(float s, float t, float out[2]) {
