@@ -210,10 +210,10 @@ SF_INLINE double sf_pixel_mitchell_weight_f64(const double x[2]) {
 }
 
 SF_INLINE double sf_lanczos_integral_f64(int row, double v, double *density) {
-    double p = sf_lanczos_table_f64[row][SF_LANCZOS_TERMS - 1], slope = 0.0;
+    double p = sf_lanczos_table_f64[SF_LANCZOS_TERMS - 1][row], slope = 0.0;
     for (int i = SF_LANCZOS_TERMS - 2; i >= 0; --i) {
         slope = slope * v + p;
-        p = p * v + sf_lanczos_table_f64[row][i];
+        p = p * v + sf_lanczos_table_f64[i][row];
     }
     *density = v * (2.0 * p + v * slope);
     return v * v * p;
@@ -231,11 +231,11 @@ SF_INLINE double sf_lanczos_sample_f64(double s) {
     static const double rough[5] = {1.75, 2.42, 9.67, 9.67, 27.0};
     const double *lobe = sf_lanczos_lobes_f64;
     double r = (s < 0.5 ? s : 1.0 - s) * (2.0 * (lobe[0] + lobe[1] + lobe[2]));
-    int row = 4 - (r >= 0.5 * lobe[2]) - (r >= lobe[2]) - (r >= lobe[2] + 0.5 * lobe[1]) - (r >= lobe[2] + lobe[1]);
-    double inside = row < 4 ? r - lobe[2] : r;
-    inside = row < 2 ? inside - lobe[1] : inside;
-    double mass = turn[row] * inside, scaled = mass * rough[row];
-    double cube = sf_cbrt_rough_f64(scaled), root = sqrt(scaled), v = row == 4 ? cube : root;
+    double past = r >= 0.5 * lobe[2] ? 1.0 : 0.0, zero = r >= lobe[2] ? 1.0 : 0.0;
+    double next = r >= lobe[2] + 0.5 * lobe[1] ? 1.0 : 0.0, last = r >= lobe[2] + lobe[1] ? 1.0 : 0.0;
+    int row = 4 - (int)(past + zero + next + last);
+    double mass = turn[row] * ((r - past * lobe[2]) - next * lobe[1]), scaled = mass * rough[row];
+    double cube = sf_cbrt_rough_f64(scaled), root = sqrt(scaled), v = cube + past * (root - cube);
     v = sf_lanczos_step_f64(row, v, mass);
     v = sf_lanczos_step_f64(row, v, mass);
     v = sf_lanczos_step_f64(row, v, mass);
@@ -245,24 +245,24 @@ SF_INLINE double sf_lanczos_sample_f64(double s) {
 }
 
 SF_INLINE double sf_lanczos_f64(double x) {
-    double d = fabs(x - 0.5), inside = d < 3.0 ? d : 3.0, whole = (double)(int32_t)inside, sine, third, cosine;
-    double near = inside < 1.5 ? inside : 3.0 - inside, square = d > 0x1p-40 ? d * d : 0x1p-80;
-    sf_sincos_2pi_f64(0.5 * (inside - whole), &sine, &cosine);
+    double d = fabs(x - 0.5), inside = (d < 3.0 ? d : 3.0) + 0x1p-60, sine, third, cosine;
+    int32_t whole = (int32_t)inside;
+    double outside = 3.0 - inside, near = inside < outside ? inside : outside, sign = 3.0 - 6.0 * (double)(whole & 1);
+    sf_sincos_2pi_f64(0.5 * (inside - (double)whole), &sine, &cosine);
     sf_sincos_2pi_f64(near * (1.0 / 6.0), &third, &cosine);
-    double f = 3.0 / (SF_PI * SF_PI) * (sine * third / square), sign = whole == 1.0 ? -1.0 : 1.0;
-    return d > 0x1p-40 ? sign * f : 1.0;
+    return sign * (sine * third) / (SF_PI * SF_PI * (inside * inside));
 }
 SF_INLINE double sf_lanczos_invert_f64(double x) {
     static const double turn[5] = {1.0, -1.0, 1.0, -1.0, 1.0}, origin[5] = {1.0, 1.0, 2.0, 2.0, 3.0};
     const double *lobe = sf_lanczos_lobes_f64;
     double d = fabs(x - 0.5), density;
     d = d < 3.0 ? d : 3.0;
-    int row = (d >= 1.0) + (d >= 1.5) + (d >= 2.0) + (d >= 2.5);
+    double first = d < 1.5 ? 1.0 : 0.0, second = d < 2.5 ? 1.0 : 0.0;
+    int row = (int)((d >= 1.0 ? 1.0 : 0.0) + (1.0 - first) + (d >= 2.0 ? 1.0 : 0.0) + (1.0 - second));
     double mass = turn[row] * sf_lanczos_integral_f64(row, fabs(d - origin[row]), &density);
-    mass = row < 4 ? mass + lobe[2] : mass;
-    mass = row < 2 ? mass + lobe[1] : mass;
-    double tail = mass / (2.0 * (lobe[0] + lobe[1] + lobe[2]));
-    return sf_unit_clamp_f64(x < 0.5 ? tail : 1.0 - tail);
+    double tail = ((mass + second * lobe[2]) + first * lobe[1]) / (2.0 * (lobe[0] + lobe[1] + lobe[2]));
+    tail = x < 0.5 ? tail : 1.0 - tail;
+    return sf_unit_clamp_f64(tail);
 }
 SF_INLINE void sf_pixel_lanczos_sample_f64(double s, double t, double out[2]) {
     SF_ASSERT_UNIT(s, t);

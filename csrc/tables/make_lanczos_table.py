@@ -17,7 +17,7 @@ PIECES = [(1, -1, 1.0), (1, 1, 0.6), (2, -1, 0.6), (2, 1, 0.6), (3, -1, 0.7)]  #
 HEAD = """// SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-/* Made by make_lanczos_table.py: do not edit. Row: the integral of |sinc(x) sinc(x / 3)| over the
+/* Made by make_lanczos_table.py: do not edit. Column: the integral of |sinc(x) sinc(x / 3)| over the
  * distance v from the zero at 1 inwards and outwards, 2 inwards and outwards, 3 inwards, over
  * v^2, by powers of v; then the masses of the lobes between the zeros, from the middle outwards. */
 #ifndef SUNFLECK_LANCZOS_TABLE{guard}_H
@@ -53,8 +53,8 @@ def table(real: str, degree: int, digits: int) -> str:
     rows = [polynomial(zero, side, reach, degree) for zero, side, reach in PIECES]
     text = HEAD.format(guard=name.upper())
     text += f"#define SF_LANCZOS_TERMS{'' if real == 'double' else '_F'} {degree + 1}\n\n"
-    text += f"static const {real} sf_lanczos_table{name}[5][{degree + 1}] = {{\n"
-    for row in rows:
+    text += f"static const {real} sf_lanczos_table{name}[{degree + 1}][5] = {{\n"
+    for row in zip(*rows, strict=True):
         text += "    {" + ",\n     ".join(literal(x, digits, suffix) for x in row) + "},\n"
     lobes = ", ".join(literal(mass(mp.mpf(k), mp.mpf(k + 1)), digits, suffix) for k in range(3))
     return text + f"}};\n\nstatic const {real} sf_lanczos_lobes{name}[3] = {{{lobes}}};\n\n#endif\n"

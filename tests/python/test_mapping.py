@@ -3,6 +3,9 @@
 
 """mapping: round trips, densities, parameters, shapes and dtypes, out=, bad input."""
 
+import subprocess
+import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -264,3 +267,8 @@ def test_nothing_is_written_when_a_point_is_refused() -> None:
     with pytest.raises(ValueError, match="2"):
         sf.mapping.sphere.sample(u, out=out)
     assert not out.any()
+
+
+def test_the_double_formulas_are_made_from_the_headers() -> None:
+    script = Path(__file__).resolve().parents[2] / "csrc/make_mapping_f64.py"
+    assert subprocess.run([sys.executable, str(script), "--check"]).returncode == 0

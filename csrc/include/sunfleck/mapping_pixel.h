@@ -243,12 +243,12 @@ SF_INLINE float sf_pixel_mitchell_weight(const float x[2]) {
 }
 
 /* Lanczos with three lobes: sinc(x) sinc(x / 3), radius 3, zeros at 1, 2 and (double) 3. Its pieces
- * are the rows of lanczos_table.h. */
+ * are the columns of lanczos_table.h. */
 SF_INLINE float sf_lanczos_integral(int row, float v, float *density) {
-    float p = sf_lanczos_table[row][SF_LANCZOS_TERMS_F - 1], slope = 0.0f;
+    float p = sf_lanczos_table[SF_LANCZOS_TERMS_F - 1][row], slope = 0.0f;
     for (int i = SF_LANCZOS_TERMS_F - 2; i >= 0; --i) {
         slope = slope * v + p;
-        p = p * v + sf_lanczos_table[row][i];
+        p = p * v + sf_lanczos_table[i][row];
     }
     *density = v * (2.0f * p + v * slope);
     return v * v * p;
@@ -266,12 +266,12 @@ SF_INLINE float sf_lanczos_sample(float s) {
     static const float rough[5] = {1.75f, 2.42f, 9.67f, 9.67f, 27.0f}; /* v^2, at last v^3, over mass */
     const float *lobe = sf_lanczos_lobes;
     float r = (s < 0.5f ? s : 1.0f - s) * (2.0f * (lobe[0] + lobe[1] + lobe[2]));
-    int row = 4 - (r >= 0.5f * lobe[2]) - (r >= lobe[2]) - (r >= lobe[2] + 0.5f * lobe[1]) - (r >= lobe[2] + lobe[1]);
-    /* The mass from the row's zero: r less what lies outside of it, taken off lobe by lobe. */
-    float inside = row < 4 ? r - lobe[2] : r;
-    inside = row < 2 ? inside - lobe[1] : inside;
-    float mass = turn[row] * inside, scaled = mass * rough[row];
-    float cube = sf_cbrt_rough(scaled), root = sqrtf(scaled), v = row == 4 ? cube : root;
+    float past = r >= 0.5f * lobe[2] ? 1.0f : 0.0f, zero = r >= lobe[2] ? 1.0f : 0.0f;
+    float next = r >= lobe[2] + 0.5f * lobe[1] ? 1.0f : 0.0f, last = r >= lobe[2] + lobe[1] ? 1.0f : 0.0f;
+    int row = 4 - (int)(past + zero + next + last);
+    /* The mass from the row's zero: r less what lies outside of it. */
+    float mass = turn[row] * ((r - past * lobe[2]) - next * lobe[1]), scaled = mass * rough[row];
+    float cube = sf_cbrt_rough(scaled), root = sqrtf(scaled), v = cube + past * (root - cube);
     v = sf_lanczos_step(row, v, mass);
     v = sf_lanczos_step(row, v, mass);
     v = sf_lanczos_step(row, v, mass);
@@ -281,24 +281,24 @@ SF_INLINE float sf_lanczos_sample(float s) {
 }
 /* The filter itself; sin(pi d) from what is left to the nearest zero. */
 SF_INLINE float sf_lanczos(float x) {
-    float d = fabsf(x - 0.5f), inside = d < 3.0f ? d : 3.0f, whole = (float)(int32_t)inside, sine, third, cosine;
-    float near = inside < 1.5f ? inside : 3.0f - inside, square = d > 0x1p-40f ? d * d : 0x1p-80f;
-    sf_sincos_2pi(0.5f * (inside - whole), &sine, &cosine);
+    float d = fabsf(x - 0.5f), inside = (d < 3.0f ? d : 3.0f) + 0x1p-60f, sine, third, cosine; /* never 0 */
+    int32_t whole = (int32_t)inside;
+    float outside = 3.0f - inside, near = inside < outside ? inside : outside, sign = 3.0f - 6.0f * (float)(whole & 1);
+    sf_sincos_2pi(0.5f * (inside - (float)whole), &sine, &cosine);
     sf_sincos_2pi(near * (1.0f / 6.0f), &third, &cosine);
-    float f = 3.0f / (SF_PI_F * SF_PI_F) * (sine * third / square), sign = whole == 1.0f ? -1.0f : 1.0f;
-    return d > 0x1p-40f ? sign * f : 1.0f;
+    return sign * (sine * third) / (SF_PI_F * SF_PI_F * (inside * inside));
 }
 SF_INLINE float sf_lanczos_invert(float x) {
     static const float turn[5] = {1.0f, -1.0f, 1.0f, -1.0f, 1.0f}, origin[5] = {1.0f, 1.0f, 2.0f, 2.0f, 3.0f};
     const float *lobe = sf_lanczos_lobes;
     float d = fabsf(x - 0.5f), density;
     d = d < 3.0f ? d : 3.0f;
-    int row = (d >= 1.0f) + (d >= 1.5f) + (d >= 2.0f) + (d >= 2.5f);
+    float first = d < 1.5f ? 1.0f : 0.0f, second = d < 2.5f ? 1.0f : 0.0f;
+    int row = (int)((d >= 1.0f ? 1.0f : 0.0f) + (1.0f - first) + (d >= 2.0f ? 1.0f : 0.0f) + (1.0f - second));
     float mass = turn[row] * sf_lanczos_integral(row, fabsf(d - origin[row]), &density);
-    mass = row < 4 ? mass + lobe[2] : mass;
-    mass = row < 2 ? mass + lobe[1] : mass;
-    float tail = mass / (2.0f * (lobe[0] + lobe[1] + lobe[2]));
-    return sf_unit_clamp(x < 0.5f ? tail : 1.0f - tail);
+    float tail = ((mass + second * lobe[2]) + first * lobe[1]) / (2.0f * (lobe[0] + lobe[1] + lobe[2]));
+    tail = x < 0.5f ? tail : 1.0f - tail;
+    return sf_unit_clamp(tail);
 }
 SF_INLINE void sf_pixel_lanczos_sample(float s, float t, float out[2]) {
     SF_ASSERT_UNIT(s, t);
