@@ -8,12 +8,12 @@
 
 #include "sunfleck/elementary.h"
 
-static inline double sf_unit_clamp_f64(double x) {
+SF_INLINE double sf_unit_clamp_f64(double x) {
     double low = x > 0.0 ? x : 0.0;
     return low < SF_UNIT_MAX ? low : SF_UNIT_MAX;
 }
 
-static inline void sf_sincos_2pi_octant_f64(double r, double *sine, double *cosine) {
+SF_INLINE void sf_sincos_2pi_octant_f64(double r, double *sine, double *cosine) {
     double t = r * r;
     double p = 0x1.50783485cbd83p+5 + t * (-0x1.e3074b4ff3058p+3 + t * (0x1.e8eed12ee00a3p+1 + t * -0x1.6c5b875d4e714p-1));
     p = -0x1.4abbce625be53p+5 + t * (0x1.466bc6775aad9p+6 + t * (-0x1.32d2cce62ac22p+6 + t * p));
@@ -23,7 +23,7 @@ static inline void sf_sincos_2pi_octant_f64(double r, double *sine, double *cosi
     *cosine = 1.0 + t * (-0x1.3bd3cc9be45dep+4 + t * q);
 }
 
-static inline void sf_sincos_2pi_f64(double u, double *sine, double *cosine) {
+SF_INLINE void sf_sincos_2pi_f64(double u, double *sine, double *cosine) {
     int32_t quarter = ((int32_t)(u * 8.0) + 1) >> 1;
     double s, c;
     sf_sincos_2pi_octant_f64(u - (double)quarter * 0.25, &s, &c);
@@ -33,7 +33,7 @@ static inline void sf_sincos_2pi_f64(double u, double *sine, double *cosine) {
 }
 
 /* Measured from the diagonal past tan(pi/8), which makes the two ranges equal. */
-static inline double sf_atan_turns_f64(double low, double high) {
+SF_INLINE double sf_atan_turns_f64(double low, double high) {
     int diagonal = low > 0.41421356237309503 * high;
     double numerator = diagonal ? high - low : low, denominator = diagonal ? high + low : high;
     double z = numerator / (denominator > 0.0 ? denominator : 1.0), t = z * z;
@@ -44,7 +44,7 @@ static inline double sf_atan_turns_f64(double low, double high) {
     return diagonal ? 0.125 - a : a;
 }
 
-static inline double sf_angle_2pi_f64(double y, double x) {
+SF_INLINE double sf_angle_2pi_f64(double y, double x) {
     double ax = fabs(x), ay = fabs(y);
     int steep = ay > ax;
     double a = sf_atan_turns_f64(steep ? ax : ay, steep ? ay : ax);
@@ -55,7 +55,7 @@ static inline double sf_angle_2pi_f64(double y, double x) {
 }
 
 /* log(1 + f) = f - s (f - R(s^2)) with s = f / (2 + f), from the series of atanh. */
-static inline double sf_log_with_f64(double x, double rest) {
+SF_INLINE double sf_log_with_f64(double x, double rest) {
     int64_t bits;
     memcpy(&bits, &x, 8);
     int32_t k = ((int32_t)((uint64_t)bits >> 32) - 0x3fe6a09e) >> 20;
@@ -69,14 +69,14 @@ static inline double sf_log_with_f64(double x, double rest) {
     return e * 0x1.62e42fefap-1 + (f - (s * (f - p) - (e * 0x1.cf79abc9e3b3ap-40 + rest)));
 }
 
-static inline double sf_log_f64(double x) { return sf_log_with_f64(x, 0.0); }
+SF_INLINE double sf_log_f64(double x) { return sf_log_with_f64(x, 0.0); }
 
-static inline double sf_log1m_f64(double s) {
+SF_INLINE double sf_log1m_f64(double s) {
     double v = 1.0 - s, lost = (1.0 - v) - s;
     return sf_log_with_f64(v, lost + lost * s);
 }
 
-static inline double sf_exp_clamp_f64(double x) {
+SF_INLINE double sf_exp_clamp_f64(double x) {
     int64_t bits, magnitude, largest = INT64_C(0x4086200000000000); /* 708.0 */
     memcpy(&bits, &x, 8);
     magnitude = bits & INT64_MAX;
@@ -86,7 +86,7 @@ static inline double sf_exp_clamp_f64(double x) {
     return x;
 }
 
-static inline double sf_exp_split_f64(double x, double *power) {
+SF_INLINE double sf_exp_split_f64(double x, double *power) {
     double scaled = x * 0x1.71547652b82fep+0;
     int32_t k = (int32_t)(scaled + copysign(0.5, scaled));
     double f = (x - (double)k * 0x1.62e42fefap-1) - (double)k * 0x1.cf79abc9e3b3ap-40;
@@ -100,14 +100,22 @@ static inline double sf_exp_split_f64(double x, double *power) {
     return f + f * f * p;
 }
 
-static inline double sf_exp_f64(double x) {
+SF_INLINE double sf_exp_f64(double x) {
     double power, p = sf_exp_split_f64(sf_exp_clamp_f64(x), &power);
     return power + power * p;
 }
 
-static inline double sf_expm1_f64(double x) {
+SF_INLINE double sf_expm1_f64(double x) {
     double power, p = sf_exp_split_f64(sf_exp_clamp_f64(x), &power);
     return (power - 1.0) + power * p;
+}
+
+SF_INLINE double sf_cbrt_rough_f64(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, 8);
+    bits = (uint64_t)((uint32_t)(bits >> 32) / 3 + 0x2a9f7893u) << 32;
+    memcpy(&x, &bits, 8);
+    return x;
 }
 
 #endif

@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).parent
-SOURCES = ["mapping_plane.h", "mapping_sphere.h"]
+SOURCES = ["mapping_pixel.h", "mapping_plane.h", "mapping_sphere.h", "mapping_lobe.h", "mapping_light.h"]
 HEAD = """// SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
@@ -20,6 +20,7 @@ HEAD = """// SPDX-FileCopyrightText: 2026 The Sunfleck developers
 #define SUNFLECK_MAPPING_F64_H
 
 #include "elementary_f64.h"
+#include "lanczos_table_f64.h"
 """
 RULES = [
     (r"/\*.*?\*/|//[^\n]*", ""),
@@ -27,8 +28,10 @@ RULES = [
     (r'extern "C" \{\n|^\}\n(?=\s*\Z)', ""),
     (r"\bfloat\b", "double"),
     (r"\b(sqrt|fabs|copysign)f\b", r"\1"),
-    (r"\b(0x[0-9a-f.]+p[-+]?\d+|\d+\.\d*(?:e[-+]?\d+)?)f\b", r"\1"),
-    (r"\b(SF_PI|SF_UNIT_MAX)_F\b", r"\1"),
+    (r"\b(0x[0-9a-f.]+p[-+]?\d+|\d+\.?\d*(?:e[-+]?\d+)?)f\b", r"\1"),
+    (r"\b(SF_PI|SF_UNIT_MAX|SF_LANCZOS_TERMS)_F\b", r"\1"),
+    (r"\b(sf_lanczos_(?:table|lobes))\b", r"\1_f64"),
+    (r"\b(sf_spherical_(?:triangle|rectangle))\b(?!\()", r"\1_f64"),
     (r"\b(sf_\w+)\(", r"\1_f64("),
     (r"[ \t]+\n", "\n"),
     (r"\n{2,}(?=    )", "\n"),
@@ -43,7 +46,7 @@ def doubled(text: str) -> str:
 
 
 def main() -> int:
-    made = HEAD.format(names=" and ".join(SOURCES))
+    made = HEAD.format(names=", ".join(SOURCES[:-1]) + "\n * and " + SOURCES[-1])
     for name in SOURCES:
         made += f"\n/* ---- {name} ---- */\n\n" + doubled((HERE / "include/sunfleck" / name).read_text())
     made += "\n#endif\n"

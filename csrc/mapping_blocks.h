@@ -15,7 +15,7 @@ typedef struct FN(block) {
 #define V(k) ((const REAL[3]){P(k), P((k) + 1), P((k) + 2)})
 #define POINT(width) {b->in[0][i], b->in[1][i], (width) > 2 ? b->in[2][i] : 0}
 
-#define TRIPLE(name, width, ...)                                                          \
+#define TRIPLE(name, width, weight, ...)                                                          \
     static void FN(name##_sample)(FN(block) * b) {                                        \
         EACH {                                                                            \
             REAL x[3];                                                                    \
@@ -36,10 +36,16 @@ typedef struct FN(block) {
             F(sf_##name##_invert)(x __VA_ARGS__, u);                                      \
             for (int k = 0; k < 2; ++k) b->out[k][i] = u[k];                              \
         }                                                                                 \
+    }                                                                                     \
+    static void FN(name##_weight)(FN(block) * b) {                                        \
+        EACH {                                                                            \
+            const REAL x[3] = POINT(width);                                               \
+            b->out[0][i] = F(weight)(x);                                                  \
+        }                                                                                 \
     }
 MAPPINGS(TRIPLE)
 
-#define ROW(name, width, ...) {FN(name##_sample), FN(name##_pdf), FN(name##_invert)},
+#define ROW(name, width, weight, ...) {FN(name##_sample), FN(name##_pdf), FN(name##_invert), FN(name##_weight)},
 static void (*const FN(functions)[SF_MAPPING_COUNT][SF_MAPPING_VERB_COUNT])(FN(block) *) = {MAPPINGS(ROW)};
 
 /* Rows of `width` values into columns. */

@@ -7,9 +7,15 @@
 #include "level.h"
 #include "sunfleck/mapping.h"
 
-#define SF_MAPPING_MAX_COMPONENTS 9 /* of all parameters of a mapping together */
+#define SF_MAPPING_MAX_COMPONENTS 12 /* of all parameters of a mapping together */
 
-typedef enum sf_mapping_verb { SF_MAPPING_SAMPLE = 0, SF_MAPPING_PDF, SF_MAPPING_INVERT, SF_MAPPING_VERB_COUNT } sf_mapping_verb;
+typedef enum sf_mapping_verb {
+    SF_MAPPING_SAMPLE = 0,
+    SF_MAPPING_PDF,
+    SF_MAPPING_INVERT,
+    SF_MAPPING_WEIGHT,
+    SF_MAPPING_VERB_COUNT
+} sf_mapping_verb;
 
 /* One bulk call, checked. Rows are packed; parameter k has `components[k]` values every
  * `strides[k]`, at a pointer to the values' type. */

@@ -89,6 +89,7 @@ nb::typed<nb::dict, nb::str, nb::str> listed(const char *(*name)(Enum), const ch
 void bind_rng(nb::module_ &m);
 void bind_points(nb::module_ &m);
 void bind_mapping(nb::module_ &m);
+void bind_discrete(nb::module_ &m);
 void bind_estimate(nb::module_ &m);
 void bind_integrate(nb::module_ &m);
 void bind_uniformity(nb::module_ &m);

@@ -41,12 +41,14 @@ fill_function<T> function_of(const std::string &operation);
 template <>
 fill_function<float> function_of(const std::string &operation) {
     if (operation == "sample") return sf_mapping_sample_fill_f32;
-    return operation == "pdf" ? sf_mapping_pdf_fill_f32 : sf_mapping_invert_fill_f32;
+    if (operation == "invert") return sf_mapping_invert_fill_f32;
+    return operation == "pdf" ? sf_mapping_pdf_fill_f32 : sf_mapping_weight_fill_f32;
 }
 template <>
 fill_function<double> function_of(const std::string &operation) {
     if (operation == "sample") return sf_mapping_sample_fill_f64;
-    return operation == "pdf" ? sf_mapping_pdf_fill_f64 : sf_mapping_invert_fill_f64;
+    if (operation == "invert") return sf_mapping_invert_fill_f64;
+    return operation == "pdf" ? sf_mapping_pdf_fill_f64 : sf_mapping_weight_fill_f64;
 }
 
 // A parameter is None (its default), one value, or one value for each point.

@@ -32,6 +32,7 @@ NB_MODULE(_core, m) {
     bind_rng(m);
     bind_points(m);
     bind_mapping(m);
+    bind_discrete(m);
     bind_estimate(m);
     bind_integrate(m);
     bind_uniformity(m);

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from sunfleck import estimate, mapping, scenes, uniformity
 from sunfleck._core import version as _version
+from sunfleck.discrete import AliasTable, PiecewiseConstant1D, PiecewiseConstant2D
 from sunfleck.error import Error
 from sunfleck.estimate import (
     BatchMeans,
@@ -60,6 +61,7 @@ __all__ = [
     "RNGS",
     "SCRAMBLES",
     "STOP_REASONS",
+    "AliasTable",
     "BatchMeans",
     "Camera",
     "ChannelMoments",
@@ -70,6 +72,8 @@ __all__ = [
     "IntegralLook",
     "Mesh",
     "Moments",
+    "PiecewiseConstant1D",
+    "PiecewiseConstant2D",
     "Plan",
     "PlanDimensions",
     "Progress",

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 Vector = tuple[float, float, float]
 
@@ -81,6 +81,19 @@ def shape_of(name: str, value: Any) -> tuple[int, ...]:
     if math.prod(shape) >= 1 << 60:
         raise MemoryError(f"{name} is {value!r}: no memory holds {math.prod(shape)} values")
     return shape
+
+
+def real_array(name: str, value: ArrayLike, dtype: np.dtype[Any] | None) -> NDArray[Any]:
+    """Real numbers as float32 or float64: as wanted, else float32 stays and the rest is float64."""
+    try:
+        array = np.asarray(value)
+    except ValueError as error:
+        raise ValueError(f"{name} is not a regular array: {error}") from None
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name} has dtype {array.dtype}; give real numbers")
+    if dtype is None:
+        dtype = np.dtype(np.float32 if array.dtype == np.float32 else np.float64)
+    return np.require(array, dtype, ["C", "A"])
 
 
 def output_array(out: NDArray[Any] | None, shape: tuple[int, ...], dtype: np.dtype[Any]) -> NDArray[Any]:

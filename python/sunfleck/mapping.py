@@ -26,38 +26,40 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sunfleck import _core
-from sunfleck._arguments import output_array
+from sunfleck._arguments import output_array, real_array
 
 __all__ = [
     "MAPPINGS",
     "Mapping",
+    "annulus",
+    "cone",
     "cosine_hemisphere",
+    "cosine_hemisphere_concentric",
     "disk_concentric",
     "disk_naive",
     "disk_polar",
+    "ggx_visible_normals",
     "hemisphere",
+    "henyey_greenstein",
+    "parallelogram",
+    "pixel_blackman_harris",
     "pixel_box",
     "pixel_gaussian",
+    "pixel_gaussian_truncated",
+    "pixel_lanczos",
+    "pixel_mitchell",
     "pixel_tent",
+    "power_cosine",
+    "regular_polygon",
     "sphere",
+    "spherical_rectangle",
+    "spherical_triangle",
     "triangle",
+    "triangle_low_distortion",
 ]
 
 MAPPINGS: dict[str, str] = _core.mappings()
 """The mappings: name → one line about it."""
-
-
-def _real_array(name: str, value: ArrayLike, dtype: np.dtype[Any] | None) -> NDArray[Any]:
-    """Real numbers as float32 or float64: as wanted, else float32 stays and the rest is float64."""
-    try:
-        array = np.asarray(value)
-    except ValueError as error:
-        raise ValueError(f"{name} is not a regular array: {error}") from None
-    if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name} has dtype {array.dtype}; give real numbers")
-    if dtype is None:
-        dtype = np.dtype(np.float32 if array.dtype == np.float32 else np.float64)
-    return np.require(array, dtype, ["C", "A"])
 
 
 class Mapping:
@@ -174,6 +176,35 @@ class Mapping:
         """
         return self._map("invert", x, self._outputs, (self._inputs,), parameters, named, out)
 
+    def weight(
+        self, x: ArrayLike, *parameters: ArrayLike, out: NDArray[Any] | None = None, **named: ArrayLike
+    ) -> NDArray[Any]:
+        """What a sample at `x` counts in a mean: 1, but for filters with negative lobes.
+
+        `pixel_mitchell` and `pixel_lanczos` are sampled by the absolute value of the filter f; their
+        weight is f's sign times the integral of |f| over that of f. The mean of weight times value
+        is the filtered value; divided by the mean of the weights, a constant stays exact.
+
+        Parameters
+        ----------
+        x : array_like, shape (..., 2) or (..., 3)
+            Finite.
+        *parameters, **named
+            The mapping's own, see ``parameters``.
+        out : ndarray, optional
+            Filled in place: of the result's shape and dtype, C-contiguous, apart from the input.
+
+        Returns
+        -------
+        ndarray, shape (...), dtype of ``x``
+
+        Raises
+        ------
+        ValueError, TypeError
+            As `sample`.
+        """
+        return self._map("weight", x, self._outputs, (), parameters, named, out)
+
     def _map(
         self,
         operation: str,
@@ -184,7 +215,7 @@ class Mapping:
         named: dict[str, ArrayLike],
         out: NDArray[Any] | None,
     ) -> NDArray[Any]:
-        array = _real_array("the points", points, None)
+        array = real_array("the points", points, None)
         if array.ndim < 1 or array.shape[-1] != width:
             raise ValueError(f"the points have shape {array.shape}; {self.name}.{operation} takes (..., {width})")
         leading = array.shape[:-1]
@@ -223,7 +254,7 @@ class Mapping:
         self, name: str, components: int, value: ArrayLike, leading: tuple[int, ...], dtype: np.dtype[Any]
     ) -> NDArray[Any]:
         """One value for all points, or one for each, packed."""
-        array = _real_array(name, value, dtype)
+        array = real_array(name, value, dtype)
         one = () if components == 1 else (components,)
         if array.shape == one:
             return array
@@ -241,10 +272,25 @@ class Mapping:
 pixel_box = Mapping("pixel_box")
 pixel_tent = Mapping("pixel_tent")
 pixel_gaussian = Mapping("pixel_gaussian")
+pixel_gaussian_truncated = Mapping("pixel_gaussian_truncated")
+pixel_blackman_harris = Mapping("pixel_blackman_harris")
+pixel_mitchell = Mapping("pixel_mitchell")
+pixel_lanczos = Mapping("pixel_lanczos")
 triangle = Mapping("triangle")
+triangle_low_distortion = Mapping("triangle_low_distortion")
+parallelogram = Mapping("parallelogram")
 disk_polar = Mapping("disk_polar")
 disk_concentric = Mapping("disk_concentric")
 disk_naive = Mapping("disk_naive")
+annulus = Mapping("annulus")
+regular_polygon = Mapping("regular_polygon")
 sphere = Mapping("sphere")
 hemisphere = Mapping("hemisphere")
 cosine_hemisphere = Mapping("cosine_hemisphere")
+cosine_hemisphere_concentric = Mapping("cosine_hemisphere_concentric")
+cone = Mapping("cone")
+power_cosine = Mapping("power_cosine")
+henyey_greenstein = Mapping("henyey_greenstein")
+ggx_visible_normals = Mapping("ggx_visible_normals")
+spherical_triangle = Mapping("spherical_triangle")
+spherical_rectangle = Mapping("spherical_rectangle")

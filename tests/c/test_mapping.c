@@ -27,15 +27,30 @@ static void fill_unit(float *u, size_t count, uint64_t seed) {
 
 /* ---- round trips ---- */
 
+/* The distance from the mirrored w to the normal's cap point in the space of roughness 1, and the
+ * distance of that from its axis: what a GGX normal is divided by. */
+static void ggx_lengths(const mapping_case *c, const double *u, double *sum, double *ring) {
+    const double *p = c->parameters;
+    double x = p[0] * p[3], y = p[1] * p[4], z = p[2] / sqrt(x * x + y * y + p[2] * p[2]);
+    double depth = u[1] * (1.0 + z), across = sqrt(1.0 - z * z);
+    *ring = sqrt(depth * (2.0 - depth));
+    double cx = *ring * cos(TURN * u[0]), cy = *ring * sin(TURN * u[0]), scale = across > 0.0 ? across / hypot(x, y) : 0.0;
+    *sum = sqrt((cx + x * scale) * (cx + x * scale) + (cy + y * scale) * (cy + y * scale) +
+                (1.0 - depth + z) * (1.0 - depth + z));
+}
+
 /* How far a round trip may move u, in units of the type's epsilon (2^-24, 2^-53): x is rounded by
  * about one unit of its own size, and this is multiplied by how steeply u changes with x. */
 static void allowed_error(const mapping_case *c, const double *u, double allowed[2]) {
-    allowed[0] = allowed[1] = 8.0;
+    double loss = c->loss > 0.0 ? c->loss : 1.0, sum, ring;
+    allowed[0] = allowed[1] = 8.0 * loss;
     switch (c->mapping) {
-        case SF_MAPPING_PIXEL_GAUSSIAN: {
+        case SF_MAPPING_PIXEL_GAUSSIAN:
+        case SF_MAPPING_PIXEL_GAUSSIAN_TRUNCATED: {
             /* x = 1/2 + a: rounded by 3 units of max(1/2, a); ds = 2 pi r a' da, dt = da / (2 pi a). */
-            double r = sqrt(-2.0 * log1p(-u[0])), a = c->parameters[0] * r, rounding = 3.0 * (0.5 + a);
-            allowed[0] += rounding / c->parameters[0];
+            double share = c->mapping == SF_MAPPING_PIXEL_GAUSSIAN ? 1.0 : -expm1(-0.5 * pow(c->parameters[1] / c->parameters[0], 2));
+            double r = sqrt(-2.0 * log1p(-u[0] * share)), a = c->parameters[0] * r, rounding = 3.0 * (0.5 + a);
+            allowed[0] += rounding / c->parameters[0] / share;
             allowed[1] += rounding / (TURN * a + 1e-30);
             break;
         }
@@ -45,18 +60,44 @@ static void allowed_error(const mapping_case *c, const double *u, double allowed
             allowed[0] += 40.0;
             allowed[1] += 40.0 / (sqrt(u[0]) + 1e-30);
             break;
+        case SF_MAPPING_TRIANGLE_LOW_DISTORTION:
+        case SF_MAPPING_PARALLELOGRAM: allowed[0] = allowed[1] = 80.0; break;
+        case SF_MAPPING_REGULAR_POLYGON:
+            /* s is the place across, a share of the radius sqrt(t). */
+            allowed[0] += 4.0 / (sqrt(u[1]) + 1e-30);
+            break;
+        case SF_MAPPING_GGX_VISIBLE_NORMALS:
+            /* h is the sum of two directions, and known to 4 units over its length; mirroring w
+             * about it doubles that; s is an angle about the axis, t the depth. */
+            ggx_lengths(c, u, &sum, &ring);
+            allowed[0] += 16.0 / (sum * ring + 1e-30);
+            allowed[1] += 16.0 / (sum + 1e-30);
+            break;
+        case SF_MAPPING_SPHERICAL_TRIANGLE:
+            /* s is the place of an arc from b, t the share of it: sqrt(t) of its length away. */
+            allowed[0] /= sqrt(u[1]) + 1e-30;
+            break;
         default: break;
     }
 }
 
+/* Whether 0 and 1 are the same place of u[k]. */
 static int is_angle(sf_mapping mapping, int k) {
     switch (mapping) {
-        case SF_MAPPING_PIXEL_GAUSSIAN: return k == 1;
-        case SF_MAPPING_PIXEL_BOX:
-        case SF_MAPPING_PIXEL_TENT:
-        case SF_MAPPING_TRIANGLE:
-        case SF_MAPPING_DISK_CONCENTRIC: return 0;
-        default: return k == 0;
+        case SF_MAPPING_PIXEL_GAUSSIAN:
+        case SF_MAPPING_PIXEL_GAUSSIAN_TRUNCATED: return k == 1;
+        case SF_MAPPING_DISK_POLAR:
+        case SF_MAPPING_DISK_NAIVE:
+        case SF_MAPPING_ANNULUS:
+        case SF_MAPPING_REGULAR_POLYGON:
+        case SF_MAPPING_SPHERE:
+        case SF_MAPPING_HEMISPHERE:
+        case SF_MAPPING_COSINE_HEMISPHERE:
+        case SF_MAPPING_CONE:
+        case SF_MAPPING_POWER_COSINE:
+        case SF_MAPPING_HENYEY_GREENSTEIN:
+        case SF_MAPPING_GGX_VISIBLE_NORMALS: return k == 0;
+        default: return 0;
     }
 }
 
@@ -67,8 +108,8 @@ static void expect_round_trip(const mapping_case *c, const double *u, const doub
         double error = fabs(back[k] - u[k]);
         if (is_angle(c->mapping, k) && error > 0.5) error = 1.0 - error;
         if (!(error <= allowed[k] * epsilon) || !(back[k] >= 0.0 && back[k] < 1.0))
-            fail_msg("%s: u = (%.17g, %.17g) comes back as (%.17g, %.17g), %.1f units off, allowed %.1f",
-                     sf_mapping_name(c->mapping), u[0], u[1], back[0], back[1], error / epsilon, allowed[k]);
+            fail_msg("%s (case %zu): u = (%.17g, %.17g) comes back as (%.17g, %.17g), %.1f units off, allowed %.1f",
+                     sf_mapping_name(c->mapping), (size_t)(c - mapping_cases), u[0], u[1], back[0], back[1], error / epsilon, allowed[k]);
     }
 }
 
@@ -105,21 +146,29 @@ static void test_doubles_come_back_within_stated_units(void **state) {
 
 static void test_floats_are_the_doubles_rounded(void **state) {
     (void)state;
-    float u[2 * COUNT], x[3 * COUNT];
-    double wide_u[2 * COUNT], wide_x[3 * COUNT];
+    static float u[2 * COUNT], x[3 * COUNT];
+    static double wide_u[2 * COUNT], wide_x[3][3 * COUNT];
     for (size_t i = 0; i < CASE_COUNT; ++i) {
         const mapping_case *c = &mapping_cases[i];
         size_t width = sf_mapping_output_width(c->mapping);
         case_parameters p;
         case_parameters_init(&p, c);
         fill_unit(u, 2 * COUNT, 77 + i);
-        for (size_t k = 0; k < 2 * COUNT; ++k) wide_u[k] = (double)u[k];
         sf_mapping_sample_fill_f32(c->mapping, COUNT, u, p.f32_at, NULL, x, NULL);
-        sf_mapping_sample_fill_f64(c->mapping, COUNT, wide_u, p.f64_at, NULL, wide_x, NULL);
-        /* Every formula ends within 8 units of the size of the shape, at most 10. */
-        for (size_t k = 0; k < width * COUNT; ++k)
-            if (!(fabs((double)x[k] - wide_x[k]) <= 8.0 * 0x1p-24 * fmax(1.0, fabs(wide_x[k]))))
-                fail_msg("%s: %.9g and %.17g", sf_mapping_name(c->mapping), (double)x[k], wide_x[k]);
+        for (int shift = 0; shift < 3; ++shift) {
+            for (size_t k = 0; k < 2 * COUNT; ++k)
+                wide_u[k] = fmin(fmax((double)u[k] + (shift - 1) * 2.0 * 0x1p-24, 0.0), SF_UNIT_MAX);
+            sf_mapping_sample_fill_f64(c->mapping, COUNT, wide_u, p.f64_at, NULL, wide_x[shift], NULL);
+        }
+        /* Every formula ends within 8 units of the size of the shape, at most 10, and of what two
+         * units of u move the sample; a GGX normal is a sum of directions, over its length. */
+        for (size_t k = 0; k < width * COUNT; ++k) {
+            double error = fabs((double)x[k] - wide_x[1][k]), moved = fabs(wide_x[2][k] - wide_x[0][k]);
+            double given[2] = {(double)u[k / width * 2], (double)u[k / width * 2 + 1]}, sum = 1.0, ring;
+            if (c->mapping == SF_MAPPING_GGX_VISIBLE_NORMALS) ggx_lengths(c, given, &sum, &ring);
+            if (!(error <= 8.0 * 0x1p-24 * fmax(1.0, fabs(wide_x[1][k])) / sum + moved))
+                fail_msg("%s (case %zu): %.9g and %.17g", sf_mapping_name(c->mapping), i, (double)x[k], wide_x[1][k]);
+        }
     }
 }
 
@@ -129,7 +178,11 @@ static void test_floats_are_the_doubles_rounded(void **state) {
 static int is_documented(sf_mapping mapping, const float *u, float pdf) {
     switch (mapping) {
         case SF_MAPPING_PIXEL_TENT: return pdf == 0.0f && (u[0] < 0x1p-51f || u[1] < 0x1p-51f);
+        case SF_MAPPING_PIXEL_MITCHELL:
+        case SF_MAPPING_PIXEL_LANCZOS: return pdf == 0.0f && (u[0] < 0x1p-64f || u[1] < 0x1p-64f);
         case SF_MAPPING_COSINE_HEMISPHERE: return pdf == 0.0f && u[1] == 0.0f;
+        case SF_MAPPING_COSINE_HEMISPHERE_CONCENTRIC: return pdf == 0.0f && (u[0] == 0.0f || u[1] == 0.0f);
+        case SF_MAPPING_GGX_VISIBLE_NORMALS: return pdf == 0.0f && u[1] == SF_UNIT_MAX_F;
         case SF_MAPPING_DISK_NAIVE: return isinf(pdf) && u[1] < 0x1p-60f;
         default: return 0;
     }
@@ -163,7 +216,7 @@ static void test_directions_have_length_one(void **state) {
     (void)state;
     float u[2 * COUNT], x[3 * COUNT];
     for (size_t i = 0; i < CASE_COUNT; ++i) {
-        if (mapping_cases[i].chart != CHART_SPHERE) continue;
+        if (!is_direction(&mapping_cases[i])) continue;
         case_parameters p;
         case_parameters_init(&p, &mapping_cases[i]);
         fill_unit(u, 2 * COUNT, i);
@@ -171,7 +224,8 @@ static void test_directions_have_length_one(void **state) {
         for (int k = 0; k < COUNT; ++k) {
             double square = 0.0;
             for (int j = 0; j < 3; ++j) square += (double)x[3 * k + j] * (double)x[3 * k + j];
-            assert_true(fabs(sqrt(square) - 1.0) <= 2.0 * 0x1p-23);
+            if (!(fabs(sqrt(square) - 1.0) <= 2.0 * 0x1p-23))
+                fail_msg("%s (case %zu): length 1 + %g", sf_mapping_name(mapping_cases[i].mapping), i, sqrt(square) - 1.0);
         }
     }
 }

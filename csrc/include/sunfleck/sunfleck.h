@@ -6,6 +6,7 @@
 #define SUNFLECK_SUNFLECK_H
 
 #include "sunfleck/base.h"
+#include "sunfleck/discrete.h"
 #include "sunfleck/estimate.h"
 #include "sunfleck/image.h"
 #include "sunfleck/integrate.h"
