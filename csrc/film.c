@@ -13,6 +13,7 @@
 #include "error.h"
 #include "mask.h"
 #include "platform.h"
+#include "scene_data.h"
 #include "stopping.h"
 
 #define OWN_CHANNELS 7
@@ -82,10 +83,22 @@ sf_status sf_film_create(const sf_render_options *options, sf_film **out, sf_err
     film->y0 = crop[1] / SF_CELL_SIZE * SF_CELL_SIZE;
     film->width = smaller(round_up(crop[2]), options->width) - film->x0;
     film->height = smaller(round_up(crop[3]), options->height) - film->y0;
-    sf_status status = allocate_arrays(film, options->mask != NULL, error);
+    film->options = *options;
+    film->options.progress = NULL;
+    film->options.progress_user = NULL;
+    film->options.notice = NULL;
+    film->options.notice_user = NULL;
+    film->options.checkpoint_path = NULL;
+    film->options.mask = NULL;
+    film->parts = malloc(sizeof *film->parts);
+    film->part_count = 1;
+    sf_status status = film->parts ? allocate_arrays(film, options->mask != NULL, error) : sf_fail_memory(error, "a film", sizeof *film->parts);
     if (!status && options->aovs) status = sf_aov_create(options, film, error);
     if (!status) sf_mask_apply(options, film);
-    if (status) {
+    if (!status) {
+        film->parts[0].seed = options->seed;
+        memcpy(film->parts[0].crop, crop, sizeof film->parts[0].crop);
+    } else {
         sf_film_destroy(film);
         film = NULL;
     }
@@ -99,7 +112,18 @@ void sf_film_destroy(sf_film *film) {
     sf_pages_free(film->memory, film->memory_bytes);
     for (size_t i = 0; i < film->attribute_count; ++i) free((char *)film->attributes[i].text);
     free(film->attributes);
+    free(film->parts);
     free(film);
+}
+
+sf_status sf_film_identify(sf_film *film, const sf_scene *scene, sf_isa isa, sf_error *error) {
+    sf_scene_info info;
+    sf_status status = sf_scene_get_info(scene, &info, error);
+    if (status) return status;
+    film->scene_hash = info.hash;
+    film->embree_version = (uint32_t)rtcGetDeviceProperty(scene->device, RTC_DEVICE_PROPERTY_VERSION);
+    film->isa = isa;
+    return SF_STATUS_OK;
 }
 
 void sf_film_add(sf_film_pixel *pixel, const sf_block_statistics *block) {
@@ -107,11 +131,16 @@ void sf_film_add(sf_film_pixel *pixel, const sf_block_statistics *block) {
     pixel->hits += block->hits;
 }
 
+void sf_film_merge_pixel(sf_film_pixel *pixel, const sf_film_pixel *other) {
+    sf_vector_moments_merge(&pixel->moments, &other->moments);
+    pixel->hits += other->hits;
+}
+
 float sf_film_half_width(const sf_film_pixel *pixel, double z) {
     return (float)(z * sf_vector_moments_standard_error(&pixel->moments) * sqrt(1.0 / 3.0));
 }
 
-const sf_film_pixel *sf_film_row_pixels(const sf_film *film, uint32_t y) {
+sf_film_pixel *sf_film_row_pixels(const sf_film *film, uint32_t y) {
     return film->pixels + (size_t)(y + film->crop_y0 - film->y0) * film->width + (film->crop_x0 - film->x0);
 }
 
@@ -143,7 +172,7 @@ static void resolve_pixel(sf_film *film, const sf_film_pixel *pixel, size_t i) {
     for (int c = 0; c < 3; ++c) film->color[3 * i + c] = (float)moments->mean[c];
     film->alpha[i] = moments->count ? (float)((double)pixel->hits / (double)moments->count) : 0;
     film->half_width[i] = pixel->half_width;
-    film->samples[i] = (uint32_t)moments->count;
+    film->samples[i] = (uint32_t)(moments->count < UINT32_MAX ? moments->count : UINT32_MAX);
     film->reason[i] = pixel->reason;
 }
 
@@ -185,6 +214,12 @@ void sf_film_summarize_rows(sf_film *film) {
         summary->worst_x = row->worst_x;
         summary->worst_y = y + film->crop_y0;
     }
+}
+
+void sf_film_resolve(sf_film *film) {
+    for (uint32_t y = 0; y < film->crop_height; ++y) sf_film_sum_row(film, y);
+    for (uint32_t y = 0; y < film->crop_height; ++y) sf_film_resolve_row(film, y);
+    sf_film_summarize_rows(film);
 }
 
 uint32_t sf_film_width(const sf_film *film) { return film->crop_width; }
@@ -286,18 +321,24 @@ static void describe_outcome(sf_film *film) {
     describe(film, "render_seconds", "%.6g", s->seconds);
 }
 
-sf_status sf_film_describe(sf_film *film, const sf_scene *scene, const sf_render_options *options, sf_isa isa,
-                           sf_error *error) {
-    sf_scene_info info;
-    sf_status status = sf_scene_get_info(scene, &info, error);
-    if (status) return status;
+/* The seeds of a merged film's parts, in order. */
+static void describe_parts(sf_film *film) {
+    size_t size = film->part_count * 21 + 1, used = 0;
+    char *text = malloc(size);
+    film->attributes[film->attribute_count++] = (sf_attribute){"merged_seeds", text};
+    for (size_t i = 0; text && i < film->part_count; ++i)
+        used += (size_t)snprintf(text + used, size - used, i ? " %" PRIu64 : "%" PRIu64, film->parts[i].seed);
+}
+
+sf_status sf_film_describe(sf_film *film, sf_error *error) {
     film->attributes = malloc(MAX_ATTRIBUTES * sizeof *film->attributes);
     if (!film->attributes) return sf_fail_memory(error, "the film's attributes", MAX_ATTRIBUTES * sizeof *film->attributes);
     describe(film, "version", "%s", sf_version());
-    describe(film, "instruction_set", "%s", sf_isa_name(isa));
-    describe(film, "scene_hash", "%016" PRIx64, info.hash);
-    describe_options(film, options);
+    describe(film, "instruction_set", "%s", sf_isa_name(film->isa));
+    describe(film, "scene_hash", "%016" PRIx64, film->scene_hash);
+    describe_options(film, &film->options);
     describe_outcome(film);
+    if (film->part_count > 1) describe_parts(film);
     for (size_t i = 0; i < film->attribute_count; ++i)
         if (!film->attributes[i].text) return sf_fail_memory(error, "the film's attributes", TEXT_SIZE);
     return SF_STATUS_OK;

@@ -37,6 +37,14 @@ typedef struct sf_film_pixel {
     uint8_t reason; /* sf_stop_reason, once it has stopped */
 } sf_film_pixel;
 
+/* Pixels of a cell are numbered in Morton order: the even bits of m are x, the odd bits y, so that
+ * 16 in a row are a 4 x 4 square. */
+static inline uint32_t sf_cell_x(uint32_t m) { return (m & 1u) | (m >> 1 & 2u) | (m >> 2 & 4u); }
+static inline uint32_t sf_cell_y(uint32_t m) { return sf_cell_x(m >> 1); }
+static inline uint32_t sf_cell_number(uint32_t x, uint32_t y) {
+    return (x & 1u) | (x & 2u) << 1 | (x & 4u) << 2 | (y & 1u) << 1 | (y & 2u) << 2 | (y & 4u) << 3;
+}
+
 /* What a row of the crop adds to the summary; rows are filled by any thread, and summed in order. */
 typedef struct sf_film_row {
     uint64_t samples, nonfinite, reasons[SF_STOP_REASON_COUNT];
@@ -46,6 +54,12 @@ typedef struct sf_film_row {
 } sf_film_row;
 
 struct sf_aov_film;
+
+/* A render that went into the film: films that share a pixel and a seed share its samples. */
+typedef struct sf_film_part {
+    uint64_t seed;
+    uint32_t crop[4];
+} sf_film_part;
 
 /* The cells that the crop touches, in pixels of the full frame, and what is kept of them. */
 struct sf_film {
@@ -69,7 +83,16 @@ struct sf_film {
     sf_attribute *attributes;
     size_t attribute_count;
     sf_film_summary summary;
+    sf_render_options options; /* complete; without the caller's functions and paths */
+    sf_film_part *parts;       /* one, more after a merge */
+    size_t part_count;
+    uint64_t scene_hash;
+    uint32_t embree_version;
+    sf_isa isa;
 };
+
+/* What a render's own film is made of, for the checkpoint and for merging. */
+sf_status sf_film_identify(sf_film *film, const sf_scene *scene, sf_isa isa, sf_error *error);
 
 sf_status sf_film_create(const sf_render_options *options, sf_film **film, sf_error *error);
 
@@ -79,10 +102,12 @@ static inline int sf_film_counts(const sf_film *film, uint32_t x, uint32_t y) {
 }
 
 /* The accumulators of row y of the crop. */
-const sf_film_pixel *sf_film_row_pixels(const sf_film *film, uint32_t y);
 
 /* Adds a block to its pixel; blocks of a pixel are added in the order of their base. */
 void sf_film_add(sf_film_pixel *pixel, const sf_block_statistics *block);
+
+/* Adds what another film's pixel has seen, but for half-width and reason. */
+void sf_film_merge_pixel(sf_film_pixel *pixel, const sf_film_pixel *other);
 
 /* Half-width of the error of (R+G+B)/3 by the lecture's colour rule, for z standard errors:
  * z s / sqrt(3 N). With s^2 the sum of the channels' variances, var((R+G+B)/3) <= s^2 / 3, and
@@ -102,8 +127,13 @@ void sf_film_resolve_row(sf_film *film, uint32_t y);
 /* Fills the counts of the summary, once every row is resolved. */
 void sf_film_summarize_rows(sf_film *film);
 
+/* The three above for every row, on this thread: for films that no render made. */
+void sf_film_resolve(sf_film *film);
+
 /* Records the options as attributes; after sf_film_summarize_rows and with the summary complete. */
-sf_status sf_film_describe(sf_film *film, const sf_scene *scene, const sf_render_options *options, sf_isa isa,
-                           sf_error *error);
+sf_status sf_film_describe(sf_film *film, sf_error *error);
+
+/* The accumulators of row y of the crop. */
+sf_film_pixel *sf_film_row_pixels(const sf_film *film, uint32_t y);
 
 #endif

@@ -178,6 +178,9 @@ static inline void sf_pause(void) {
 /* Lets another thread have the processor, if one waits for it. */
 static inline void sf_yield(void) { (void)sched_yield(); }
 
+/* What the system says of an errno; the thread's own text, where the system keeps one. */
+static inline const char *sf_system_message(int number) { return strerror(number); }
+
 /* How many bits of x are 1. */
 static inline unsigned sf_count_bits(uint32_t x) { return (unsigned)__builtin_popcount(x); }
 

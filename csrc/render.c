@@ -20,6 +20,7 @@
 
 #include "aov.h"
 #include "batch.h"
+#include "checkpoint.h"
 #include "error.h"
 #include "film.h"
 #include "mask.h"
@@ -30,7 +31,7 @@
 
 #define CELL_PIXELS (SF_CELL_SIZE * SF_CELL_SIZE)
 
-enum { RUNNING = 0, OUT_OF_TIME, INTERRUPTED, SPENT };
+enum { RUNNING = 0, OUT_OF_TIME, INTERRUPTED, SPENT, PAUSED };
 
 /* What belongs to one thread, on cache lines of its own. */
 typedef struct render_worker {
@@ -55,7 +56,10 @@ typedef struct render {
     uint32_t tile_cells;       /* a side */
     uint32_t *tiles;           /* those with active pixels */
     size_t tile_count;
-    uint32_t from, to; /* the round's sample counts */
+    uint32_t from, to; /* the round's sample counts; equal between rounds */
+    uint32_t ahead;    /* after a pause or a resume pixels may have up to so many samples already */
+    uint64_t region;   /* pixels traced */
+    bool in_lap;       /* a lap has begun and not ended */
     uint32_t look;     /* where the lap ends, unless the render does */
     sf_lap lap;
     double target;     /* of a budget: half-widths beyond it are to be lowered */
@@ -67,6 +71,10 @@ typedef struct render {
     double start, deadline;
     sf_progress progress;
     sf_atomic_size state;
+    size_t sampled; /* the state in which the round's sampling ended: what decisions go by */
+    double checkpoint_due;
+    sf_status checkpoint_status; /* of the last write */
+    sf_error checkpoint_error;
 } render;
 
 /* ---- the camera's frame ---- */
@@ -117,15 +125,11 @@ static uint64_t count_pixels(const render *r, const uint64_t *cells) {
 
 /* ---- a round ---- */
 
-/* The even bits of m are x, the odd bits y: 16 pixels in a row are a 4 x 4 square. */
-static uint32_t morton_x(uint32_t m) { return (m & 1u) | (m >> 1 & 2u) | (m >> 2 & 4u); }
-static uint32_t morton_y(uint32_t m) { return morton_x(m >> 1); }
-
 static uint32_t cell_x(const render *r, uint32_t cell, uint32_t m) {
-    return cell % r->cell_columns * SF_CELL_SIZE + morton_x(m);
+    return cell % r->cell_columns * SF_CELL_SIZE + sf_cell_x(m);
 }
 static uint32_t cell_y(const render *r, uint32_t cell, uint32_t m) {
-    return cell / r->cell_columns * SF_CELL_SIZE + morton_y(m);
+    return cell / r->cell_columns * SF_CELL_SIZE + sf_cell_y(m);
 }
 static sf_film_pixel *cell_pixel(const render *r, uint32_t cell, uint32_t m) {
     return r->film->pixels + (size_t)cell_y(r, cell, m) * r->film->width + cell_x(r, cell, m);
@@ -143,6 +147,8 @@ static uint32_t most_samples(const render *r) {
 /* Adds the block to its pixel's statistics, and to what the stopping rule keeps. */
 static void add_block(render *r, const sf_block *block, const sf_block_statistics *statistics) {
     sf_film_pixel *pixel = r->film->pixels + block->pixel;
+    bool lap_begins = r->lap.levels && r->from && taken(pixel) == r->from && sf_stop_is_look(&r->options, r->from);
+    if (lap_begins) sf_dyadic_begin(pixel);
     sf_film_add(pixel, statistics);
     const double *means = statistics->moments.mean;
     double mean = (means[0] + means[1] + means[2]) / 3;
@@ -185,6 +191,19 @@ static sf_block make_block(const render *r, uint32_t cell, uint32_t m, uint64_t 
     return block;
 }
 
+/* Where the block of pixel m that holds sample `n` goes on: after the samples that the pixel took
+ * before a pause or a stop. At or past the block's end there is nothing left to take. */
+static uint32_t skip_taken(const render *r, uint32_t cell, uint32_t m, uint32_t n) {
+    if (r->from >= r->ahead) return n;
+    uint64_t next = r->options.start + taken(cell_pixel(r, cell, m));
+    return next > n ? (uint32_t)next : n;
+}
+
+static uint32_t block_end(const render *r, uint32_t n) {
+    uint32_t end = n / SF_LANES * SF_LANES + SF_LANES;
+    return end < r->to ? end : r->to;
+}
+
 static void choose_keys(render *r, render_worker *worker, uint32_t cell, uint64_t active, uint64_t keys[CELL_PIXELS]) {
     for (uint32_t m = 0; m < CELL_PIXELS; ++m) {
         if (!(active >> m & 1u)) continue;
@@ -199,13 +218,12 @@ static void sample_cell(render *r, render_worker *worker, uint32_t cell) {
     uint64_t active = r->active[cell], keys[CELL_PIXELS];
     sf_batch *batch = &worker->batch;
     choose_keys(r, worker, cell, active, keys);
-    bool lap_begins = r->lap.levels && r->from && sf_stop_is_look(&r->options, r->from);
-    for (uint32_t m = 0; lap_begins && m < CELL_PIXELS; ++m)
-        if (active >> m & 1u) sf_dyadic_begin(cell_pixel(r, cell, m));
     for (uint32_t n = r->from; n < r->to; n = n / SF_LANES * SF_LANES + SF_LANES)
         for (uint32_t m = 0; m < CELL_PIXELS; ++m) {
             if (!(active >> m & 1u)) continue;
-            batch->blocks[batch->block_count++] = make_block(r, cell, m, keys[m], n);
+            uint32_t first = skip_taken(r, cell, m, n);
+            if (first >= block_end(r, n)) continue;
+            batch->blocks[batch->block_count++] = make_block(r, cell, m, keys[m], first);
             if (batch->block_count < SF_BLOCKS) continue;
             flush_batch(r, worker);
             if (sf_atomic_load(&r->state) != RUNNING) return;
@@ -277,6 +295,58 @@ static void report_round(render *r) {
     report(r, true);
 }
 
+/* ---- checkpoints ---- */
+
+static sf_checkpoint list_checkpoint(render *r) {
+    return (sf_checkpoint){.film = r->film, .open = r->open, .active = r->active, .cells = cell_count(r)};
+}
+
+/* Writes the state; a failure is a notice, and the next write is tried in its time. */
+static void save_checkpoint(render *r) {
+    const sf_render_options *o = &r->options;
+    if (!o->checkpoint_path) return;
+    const sf_film_summary *summary = &r->film->summary;
+    sf_checkpoint checkpoint = list_checkpoint(r);
+    checkpoint.state = (sf_round_state){.from = r->from,
+                                        .to = r->to,
+                                        .look = r->look,
+                                        .in_lap = r->in_lap,
+                                        .rounds = summary->rounds,
+                                        .level_fixed = r->level_fixed,
+                                        .level = summary->level,
+                                        .tolerance = summary->tolerance,
+                                        .target = r->target,
+                                        .seconds = sf_seconds_now() - r->start,
+                                        .traced_samples = samples_traced(r)};
+    r->checkpoint_status = sf_checkpoint_save(&checkpoint, o->checkpoint_path, &r->checkpoint_error);
+    if (r->checkpoint_status && o->notice) o->notice(r->checkpoint_error.message, o->notice_user);
+    r->checkpoint_due = sf_seconds_now() + o->checkpoint_seconds;
+}
+
+static bool checkpoint_is_due(const render *r) {
+    return r->options.checkpoint_path && sf_seconds_now() >= r->checkpoint_due;
+}
+
+static void wake_sampling(void *user) {
+    render *r = user;
+    report(r, false);
+    if (checkpoint_is_due(r) && sf_atomic_load(&r->state) == RUNNING) sf_atomic_store(&r->state, PAUSED);
+}
+
+/* Takes the round's samples. A stop leaves the round where it is and writes that down, before
+ * anything is decided on it; so does a checkpoint that is due, after which the round goes on. */
+static void sample_round(render *r) {
+    for (;;) {
+        sf_pool_run(r->pool, r->tile_count, sample_tile, wake_sampling, r);
+        r->sampled = sf_atomic_load(&r->state);
+        if (r->sampled == RUNNING) return;
+        r->ahead = r->to > r->ahead ? r->to : r->ahead;
+        save_checkpoint(r);
+        if (r->sampled != PAUSED) return;
+        sf_atomic_store(&r->state, RUNNING);
+    }
+}
+
 /* ---- decisions ---- */
 
 static void look_at_pool(void *user, unsigned worker, size_t item) {
@@ -298,6 +368,7 @@ static bool decide_pixel(const render *r, uint32_t x, uint32_t y, size_t state) 
     const sf_render_options *o = &r->options;
     const sf_film_summary *summary = &r->film->summary;
     bool full = taken(pixel) + o->start >= most_samples(r);
+    if (o->start + taken(pixel) > r->to && state == RUNNING) return false; /* decided here before, by an easier tolerance */
     pixel->half_width = sf_stop_half_width(r->film, o, x, y, r->z);
     bool met = !o->spp && summary->tolerance >= 0 && taken(pixel) >= o->min_spp &&
                (double)pixel->half_width <= summary->tolerance;
@@ -309,9 +380,8 @@ static bool decide_pixel(const render *r, uint32_t x, uint32_t y, size_t state) 
 
 static void decide_cell(render *r, render_worker *worker, uint32_t cell) {
     (void)worker;
-    size_t state = sf_atomic_load(&r->state);
     for (uint32_t m = 0; m < CELL_PIXELS; ++m)
-        if (r->active[cell] >> m & 1u && decide_pixel(r, cell_x(r, cell, m), cell_y(r, cell, m), state))
+        if (r->active[cell] >> m & 1u && decide_pixel(r, cell_x(r, cell, m), cell_y(r, cell, m), r->sampled))
             r->open[cell] &= ~(UINT64_C(1) << m);
 }
 
@@ -355,15 +425,21 @@ static void resolve_row(void *user, unsigned worker, size_t item) {
     sf_film_resolve_row(((render *)user)->film, (uint32_t)item);
 }
 
-/* Fixes level and tolerance after the first min_spp samples. A negative tolerance: none was asked. */
-static void fix_tolerance(render *r) {
+/* The tolerance at the level that was fixed. A negative one: none was asked. */
+static void set_tolerance(render *r) {
     const sf_render_options *o = &r->options;
     sf_film_summary *summary = &r->film->summary;
+    if (o->relative_tolerance > 0 || o->absolute_tolerance > 0)
+        summary->tolerance = fmax(o->absolute_tolerance, o->relative_tolerance * summary->level);
+}
+
+/* Fixes level and tolerance after the first min_spp samples. */
+static void fix_tolerance(render *r) {
+    const sf_render_options *o = &r->options;
     if ((r->to < o->min_spp && r->to < most_samples(r)) || r->level_fixed) return;
     r->level_fixed = true;
     measure_level(r);
-    if (o->relative_tolerance > 0 || o->absolute_tolerance > 0)
-        summary->tolerance = fmax(o->absolute_tolerance, o->relative_tolerance * summary->level);
+    set_tolerance(r);
 }
 
 /* Looks at the lap's pixels where the rule can, and closes those that are done. */
@@ -495,9 +571,11 @@ static bool begin_lap(render *r) {
         r->look = sf_stop_next_look(&r->options, r->from);
         memcpy(r->active, r->open, cell_count(r) * sizeof *r->active);
     }
+    r->to = r->from;
     r->lap = sf_stop_lap(&r->options, r->look);
     list_tiles(r);
-    return r->tile_count > 0;
+    r->in_lap = r->tile_count > 0;
+    return r->in_lap;
 }
 
 /* ---- rounds ---- */
@@ -515,30 +593,36 @@ static uint32_t round_end(const render *r) {
 /* Closes what is still open: time is up, a budget is spent, or the caller asked to stop. */
 static void close_all(render *r) {
     if (sf_atomic_load(&r->state) == RUNNING) sf_atomic_store(&r->state, SPENT);
+    r->sampled = sf_atomic_load(&r->state);
     memcpy(r->active, r->open, cell_count(r) * sizeof *r->active);
     list_tiles(r);
     sf_pool_run(r->pool, r->tile_count, decide_tile, wake, r);
 }
 
+/* One round of the lap. A stop within it leaves it as it is, written down. */
+static void run_round(render *r) {
+    if (r->from == r->to) r->to = round_end(r);
+    sample_round(r);
+    if (r->sampled != RUNNING) return;
+    r->in_lap = !(r->to == r->look || r->to == most_samples(r));
+    if (!r->in_lap) decide(r);
+    r->from = r->to;
+    ++r->film->summary.rounds;
+    report_round(r);
+    if (sf_atomic_load(&r->state) != RUNNING || checkpoint_is_due(r)) save_checkpoint(r);
+}
+
 static void run_rounds(render *r) {
-    sf_film_summary *summary = &r->film->summary;
-    summary->tolerance = -1;
-    r->to = r->options.start;
-    r->target = -1;
-    while (sf_atomic_load(&r->state) == RUNNING && begin_lap(r)) {
-        bool lap_ended;
-        do {
-            r->to = round_end(r);
-            sf_pool_run(r->pool, r->tile_count, sample_tile, wake, r);
-            lap_ended = r->to == r->look || r->to == most_samples(r);
-            if (lap_ended && sf_atomic_load(&r->state) == RUNNING) decide(r);
-            r->from = r->to;
-            ++summary->rounds;
-            report_round(r);
-        } while (!lap_ended && sf_atomic_load(&r->state) == RUNNING);
+    while (sf_atomic_load(&r->state) == RUNNING) {
+        if (!r->in_lap && !begin_lap(r)) {
+            r->in_lap = false;
+            save_checkpoint(r);
+            break;
+        }
+        run_round(r);
     }
     close_all(r);
-    if (summary->tolerance < 0) summary->tolerance = 0;
+    if (r->film->summary.tolerance < 0) r->film->summary.tolerance = 0;
 }
 
 /* ---- the whole ---- */
@@ -548,8 +632,17 @@ static uint64_t pixels_inside(uint32_t width, uint32_t height) {
     if (width >= SF_CELL_SIZE && height >= SF_CELL_SIZE) return UINT64_MAX;
     uint64_t inside = 0;
     for (uint32_t m = 0; m < CELL_PIXELS; ++m)
-        if (morton_x(m) < width && morton_y(m) < height) inside |= UINT64_C(1) << m;
+        if (sf_cell_x(m) < width && sf_cell_y(m) < height) inside |= UINT64_C(1) << m;
     return inside;
+}
+
+static void open_all(render *r) {
+    for (uint32_t y = 0; y < r->cell_rows; ++y)
+        for (uint32_t x = 0; x < r->cell_columns; ++x)
+            r->open[(size_t)y * r->cell_columns + x] =
+                sf_mask_touches_cell(&r->options, r->film->x0 + x * SF_CELL_SIZE, r->film->y0 + y * SF_CELL_SIZE)
+                    ? pixels_inside(r->film->width - x * SF_CELL_SIZE, r->film->height - y * SF_CELL_SIZE)
+                    : 0;
 }
 
 static sf_status lay_out_cells(render *r, sf_error *error) {
@@ -571,12 +664,8 @@ static sf_status lay_out_cells(render *r, sf_error *error) {
     r->chosen = malloc(tiles * sizeof *r->chosen);
     if (!r->open || !r->active || !r->tiles || !r->least || !r->worst || !r->chosen)
         return sf_fail_memory(error, "the lists of cells and tiles", cells * 16 + tiles * 24);
-    for (uint32_t y = 0; y < r->cell_rows; ++y)
-        for (uint32_t x = 0; x < r->cell_columns; ++x)
-            r->open[(size_t)y * r->cell_columns + x] =
-                sf_mask_touches_cell(&r->options, film->x0 + x * SF_CELL_SIZE, film->y0 + y * SF_CELL_SIZE)
-                    ? pixels_inside(film->width - x * SF_CELL_SIZE, film->height - y * SF_CELL_SIZE)
-                    : 0;
+    memset(r->active, 0, cells * sizeof *r->active);
+    open_all(r);
     return SF_STATUS_OK;
 }
 
@@ -616,7 +705,68 @@ static sf_status prepare(render *r, sf_error *error) {
     r->progress.pixels = r->film->counted;
     r->progress.expected_samples = o->spp * count_pixels(r, r->open);
     r->progress.time_limit = o->seconds;
-    return SF_STATUS_OK;
+    r->region = count_pixels(r, r->open);
+    r->from = r->to = o->start;
+    r->film->summary.tolerance = -1;
+    r->target = -1;
+    return sf_film_identify(r->film, scene, r->context.isa, error);
+}
+
+/* The largest index that any pixel's next sample has. */
+static uint32_t furthest(const render *r) {
+    const sf_film *film = r->film;
+    uint64_t most = 0;
+    for (size_t i = 0; i < (size_t)film->width * film->height; ++i) {
+        if (taken(film->pixels + i) > most) most = taken(film->pixels + i);
+    }
+    most += r->options.start;
+    return most < SF_MAX_SPP ? (uint32_t)most : SF_MAX_SPP;
+}
+
+/* What the checkpoint holds becomes the render's. Where more is asked for, every pixel takes part
+ * again from the first round on: rounds add nothing to the pixels that have gone beyond them, and
+ * decide nothing there, so that a pixel goes on from where it stopped, on the looks of a render
+ * that had been asked for as much from the start. */
+static void adopt_checkpoint(render *r, const sf_round_state *state, bool extended) {
+    sf_film_summary *summary = &r->film->summary;
+    r->from = state->from;
+    r->to = state->to;
+    r->look = state->look;
+    r->target = state->target;
+    r->in_lap = state->in_lap != 0;
+    r->ahead = furthest(r);
+    r->level_fixed = state->level_fixed != 0;
+    summary->level = state->level;
+    summary->tolerance = state->tolerance;
+    summary->rounds = state->rounds;
+    r->start -= state->seconds;
+    sf_atomic_store(&r->workers[0].samples, state->traced_samples);
+    if (extended) {
+        r->from = r->to = r->options.start;
+        summary->rounds = 0;
+        r->in_lap = false;
+        r->target = -1;
+        /* A count below min_spp ended where the larger one takes no level. */
+        if (r->ahead - r->options.start < r->options.min_spp) r->level_fixed = false;
+        open_all(r);
+        if (r->level_fixed) set_tolerance(r);
+    }
+    r->lap = sf_stop_lap(&r->options, r->look);
+    list_tiles(r);
+    r->progress.round = summary->rounds;
+    r->workers[0].done = (r->region - count_pixels(r, r->open)) * r->progress.pixels / r->region;
+}
+
+static sf_status resume(render *r, sf_error *error) {
+    const char *path = r->options.checkpoint_path;
+    if (!path) return SF_STATUS_OK;
+    sf_checkpoint checkpoint = list_checkpoint(r);
+    sf_resume kind;
+    sf_status status = sf_checkpoint_restore(&checkpoint, path, &kind, error);
+    if (!status && kind != SF_RESUME_NONE) adopt_checkpoint(r, &checkpoint.state, kind == SF_RESUME_EXTENDED);
+    r->deadline = r->options.seconds > 0 ? r->start + r->options.seconds : 0;
+    r->checkpoint_due = sf_seconds_now() + r->options.checkpoint_seconds;
+    return status;
 }
 
 static void finish(render *r) {
@@ -642,10 +792,11 @@ sf_status sf_render(const sf_scene *scene, const sf_render_options *options, sf_
     r->options = *options;
     status = sf_render_options_complete(&r->options, error);
     if (!status) status = prepare(r, error);
+    if (!status) status = resume(r, error);
     if (!status) {
         run_rounds(r);
         finish(r);
-        status = sf_film_describe(r->film, scene, &r->options, r->context.isa, error);
+        status = sf_film_describe(r->film, error);
     }
     sf_pool_destroy(r->pool);
     sf_aligned_free(r->workers);
@@ -659,6 +810,7 @@ sf_status sf_render(const sf_scene *scene, const sf_render_options *options, sf_
         sf_film_destroy(r->film);
     else
         *film = r->film;
+    if (!status && r->checkpoint_status) status = sf_fail(error, r->checkpoint_status, "%s", r->checkpoint_error.message);
     free(r);
     return status;
 }

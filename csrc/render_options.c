@@ -18,7 +18,8 @@ sf_render_options sf_render_options_default(void) {
                                .max_spp = 4096,
                                .pattern = SF_PATTERN_SOBOL,
                                .stop = SF_STOP_DYADIC,
-                               .tile_size = 16};
+                               .tile_size = 16,
+                               .checkpoint_seconds = 30};
 }
 
 static sf_status check_range(const char *name, uint32_t value, uint32_t lowest, uint32_t highest, sf_error *error) {
@@ -112,11 +113,28 @@ static sf_status check_aovs(const sf_render_options *o, sf_error *error) {
     return SF_STATUS_OK;
 }
 
+static sf_status check_checkpoint(const sf_render_options *o, sf_error *error) {
+    if (!(o->checkpoint_seconds >= 0 && o->checkpoint_seconds <= 1e9))
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "checkpoint_seconds is %g; it must be in [0, 1e9]",
+                       o->checkpoint_seconds);
+    if (o->checkpoint_path && (o->aovs || o->mask))
+        return sf_fail(error, SF_STATUS_UNSUPPORTED, "checkpoint goes with neither aovs nor a mask: the file holds neither");
+    if (o->checkpoint_path && !*o->checkpoint_path)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "checkpoint is an empty path; give a file's");
+    if (o->checkpoint_path && o->seeds != SF_SEEDS_PIXEL)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                       "checkpoint needs seeds pixel; with seeds %s the samples depend on which thread takes which tile, "
+                       "and a render that is resumed would not be the same",
+                       sf_seed_policy_name(o->seeds));
+    return SF_STATUS_OK;
+}
+
 sf_status sf_render_options_complete(sf_render_options *options, sf_error *error) {
     sf_status status = check_sizes(options, error);
     if (!status) status = check_budget(options, error);
     if (!status) status = check_choices(options, error);
     if (!status) status = check_aovs(options, error);
     if (!status) status = sf_mask_complete(options, error);
+    if (!status) status = check_checkpoint(options, error);
     return status;
 }

@@ -21,6 +21,7 @@ namespace {
 struct film_handle {
     sf_film *film = nullptr;
     bool signalled = false;  // Ctrl-C arrived while it was rendered
+    std::string failure;     // of the last write of its checkpoint
 
     film_handle() = default;
     ~film_handle() { sf_film_destroy(film); }
@@ -111,8 +112,18 @@ nb::typed<nb::dict, nb::str, nb::any> summary_of(const film_handle &self) {
 // Watches a render from the thread that called it: Ctrl-C, and the caller's own function.
 struct watcher {
     nb::object observer;
+    nb::object notice;
     bool signalled = false;
     std::exception_ptr failure;
+
+    void tell(const char *message) {
+        nb::gil_scoped_acquire acquired;
+        try {
+            notice(message);
+        } catch (...) {
+            failure = std::current_exception();
+        }
+    }
 
     // Tells C whether to stop. Ctrl-C stops and is spent: the partial picture is the answer to it.
     int look(const sf_progress *progress) {
@@ -133,6 +144,8 @@ struct watcher {
         return 1;
     }
 };
+
+void on_notice(const char *message, void *user) { static_cast<watcher *>(user)->tell(message); }
 
 int on_progress(const sf_progress *progress, void *user) { return static_cast<watcher *>(user)->look(progress); }
 
@@ -176,8 +189,9 @@ film_handle *render(const scene_handle &scene, uint32_t width, uint32_t height, 
                     uint32_t min_spp, uint32_t max_spp, uint64_t samples, double seconds, const std::string &pattern,
                     const std::string &pixel_filter, const std::string &stop, const std::string &seeds, uint64_t seed,
                     uint32_t threads, uint32_t tile_size, const std::vector<std::string> &aovs,
-                    std::optional<pixel_mask> mask, nb::object observer) {
-    watcher watch{observer, false, nullptr};
+                    std::optional<pixel_mask> mask,                     const std::optional<std::string> &checkpoint,
+                    double checkpoint_seconds, nb::object notice, nb::object observer) {
+    watcher watch{observer, notice, false, nullptr};
     sf_render_options options = sf_render_options_default();
     options.width = width;
     options.height = height;
@@ -202,11 +216,33 @@ film_handle *render(const scene_handle &scene, uint32_t width, uint32_t height, 
     if (mask) set_mask(options, *mask);
     options.progress = on_progress;
     options.progress_user = &watch;
+    options.checkpoint_path = checkpoint ? checkpoint->c_str() : nullptr;
+    options.checkpoint_seconds = checkpoint_seconds;
+    options.notice = on_notice;
+    options.notice_user = &watch;
 
     auto film = std::make_unique<film_handle>();
-    call([&](sf_error *error) { return sf_render(scene.scene, &options, &film->film, error); });
+    call([&](sf_error *error) {
+        sf_status status = sf_render(scene.scene, &options, &film->film, error);
+        if (status && film->film) film->failure = error->message;  // the film is done, its file is not
+        return film->film ? SF_STATUS_OK : status;
+    });
     if (watch.failure) std::rethrow_exception(watch.failure);
     film->signalled = watch.signalled;
+    return film.release();
+}
+
+film_handle *load_film(const std::string &path) {
+    auto film = std::make_unique<film_handle>();
+    call([&](sf_error *error) { return sf_film_load(path.c_str(), &film->film, error); });
+    return film.release();
+}
+
+film_handle *merge_films(const std::vector<const film_handle *> &parts) {
+    auto film = std::make_unique<film_handle>();
+    std::vector<const sf_film *> films;
+    for (const film_handle *part : parts) films.push_back(part->film);
+    call([&](sf_error *error) { return sf_film_merge(films.data(), films.size(), &film->film, error); });
     return film.release();
 }
 
@@ -229,6 +265,7 @@ void bind_render(nb::module_ &m) {
         .def_prop_ro("width", [](const film_handle &self) { return sf_film_width(self.film); })
         .def_prop_ro("height", [](const film_handle &self) { return sf_film_height(self.film); })
         .def_ro("signalled", &film_handle::signalled)
+        .def_ro("failure", &film_handle::failure)
         .def("channels", &channels_of)
         .def("color", &color_of)
         .def("aovs", &aovs_of)
@@ -251,5 +288,8 @@ void bind_render(nb::module_ &m) {
     m.def("render", &render, nb::rv_policy::take_ownership, "scene"_a, nb::kw_only(), "width"_a, "height"_a, "crop"_a,
           "spp"_a, "start"_a, "relative_tolerance"_a, "absolute_tolerance"_a, "confidence"_a, "min_spp"_a, "max_spp"_a,
           "samples"_a, "seconds"_a, "pattern"_a, "pixel_filter"_a, "stop"_a, "seeds"_a, "seed"_a, "threads"_a, "tile_size"_a,
-          "aovs"_a, "mask"_a.none(), "progress"_a.none());
+          "aovs"_a, "mask"_a.none(),
+          "checkpoint"_a.none(), "checkpoint_seconds"_a, "notice"_a, "progress"_a.none());
+    m.def("load_film", &load_film, nb::rv_policy::take_ownership, "path"_a);
+    m.def("merge_films", &merge_films, nb::rv_policy::take_ownership, "films"_a);
 }

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from sunfleck import estimate, mapping, scenes, uniformity
 from sunfleck._core import version as _version
 from sunfleck.discrete import AliasTable, PiecewiseConstant1D, PiecewiseConstant2D
-from sunfleck.error import Error
+from sunfleck.error import CheckpointError, Error
 from sunfleck.estimate import (
     BatchMeans,
     ChannelMoments,
@@ -34,7 +34,7 @@ from sunfleck.integrate import Integral, IntegralLook, integrate
 from sunfleck.load import load
 from sunfleck.mapping import MAPPINGS
 from sunfleck.points import PATTERNS, SCRAMBLES, points, valid_counts
-from sunfleck.render import AOVS, STOP_REASONS, Image, Progress, Summary, render
+from sunfleck.render import AOVS, STOP_REASONS, Image, Progress, Summary, merge, render
 from sunfleck.rng import RNGS, Rng
 from sunfleck.scene import Camera, Mesh, Plan, PlanDimensions, Scene, SceneInfo
 from sunfleck.tolerance import Tolerance
@@ -65,6 +65,7 @@ __all__ = [
     "BatchMeans",
     "Camera",
     "ChannelMoments",
+    "CheckpointError",
     "ConfidenceSequence",
     "Error",
     "Image",
@@ -89,6 +90,7 @@ __all__ = [
     "integrate",
     "load",
     "mapping",
+    "merge",
     "points",
     "render",
     "scenes",

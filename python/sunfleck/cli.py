@@ -41,6 +41,9 @@ examples:
       a fixed count of samples a pixel
   sunfleck render defocus --seconds 10 -o out.exr
       as good as ten seconds allow
+  sunfleck render cornell --checkpoint box.ckpt -o box.exr
+      may be stopped or killed: the same command goes on where it was, and a smaller --tolerance
+      or larger --spp, --max-spp or --seconds adds to what is there
 
 An .exr holds R G B A, samples, half_width and stop_reason of each pixel, what --aov asks for,
 and every option as metadata; a .png holds the colours only, as sRGB. Ctrl-C saves what there is and exits with 130.
@@ -106,6 +109,8 @@ def _add_render(commands: argparse._SubParsersAction[_Parser]) -> None:
     add("--threads", type=int, metavar="N", help="default: one for each processor")
     add("--aov", default="", metavar="NAMES", help=f"also {', '.join(sf.AOVS)}: any of these, with commas between")
     add("--crop", type=int, nargs=4, metavar=("X0", "Y0", "X1", "Y1"), help="half open, in pixels of the full frame")
+    add("--checkpoint", metavar="FILE", help="keep the render's state there, and go on from it where it exists")
+    add("--checkpoint-seconds", type=float, default=30.0, metavar="T", help="between two writes; default 30")
 
 
 def _add_points(commands: argparse._SubParsersAction[_Parser]) -> None:
@@ -167,7 +172,24 @@ def _render(given: argparse.Namespace) -> int:
     outputs = given.output or [f"{Path(given.scene).stem}.exr"]
     for output in outputs:
         writable_target(output, "pictures", IMAGE_TYPES)  # refused now rather than after the work
-    image = sf.render(
+    failure = None
+    try:
+        image = _rendered(given)
+    except sf.CheckpointError as error:  # the picture is there all the same, and is saved first
+        image, failure = error.image, error
+    for output in outputs:
+        image.save(output)
+    print(image.summary())
+    if failure:
+        raise failure
+    if image.interrupted:
+        print("sunfleck: interrupted; the partial picture was saved", file=sys.stderr)
+        return INTERRUPTED
+    return 0
+
+
+def _rendered(given: argparse.Namespace) -> sf.Image:
+    return sf.render(
         _scene(given.scene),
         given.width,
         given.height,
@@ -185,15 +207,10 @@ def _render(given: argparse.Namespace) -> int:
         threads=given.threads,
         crop=given.crop,
         aovs=given.aov,
+        checkpoint=given.checkpoint,
+        checkpoint_seconds=given.checkpoint_seconds,
         progress=sys.stderr.isatty(),
     )
-    for output in outputs:
-        image.save(output)
-    print(image.summary())
-    if image.interrupted:
-        print("sunfleck: interrupted; the partial picture was saved", file=sys.stderr)
-        return INTERRUPTED
-    return 0
 
 
 def _write_points(points: NDArray[np.float32], output: str) -> None:

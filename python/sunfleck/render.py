@@ -5,7 +5,9 @@
 
 from __future__ import annotations
 
+import logging
 import math
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -16,12 +18,13 @@ from numpy.typing import ArrayLike, NDArray
 from sunfleck import _core
 from sunfleck._arguments import integer, number, text
 from sunfleck._core import Progress
-from sunfleck._files import FilePath
+from sunfleck._files import FilePath, given_path
+from sunfleck.error import CheckpointError
 from sunfleck.image import write_channels, write_false_color
 from sunfleck.scene import Scene
 from sunfleck.tolerance import Tolerance
 
-__all__ = ["AOVS", "STOP_REASONS", "Image", "Progress", "Summary", "render"]
+__all__ = ["AOVS", "STOP_REASONS", "Image", "Progress", "Summary", "merge", "render"]
 
 STOP_REASONS: tuple[str, ...] = tuple(_core.stop_reasons())
 """The names of the numbers in `Image.stop_reason`."""
@@ -130,7 +133,7 @@ def _percent(share: float) -> str:
 
 
 class Image:
-    """A rendered picture and its statistics. Made by `render`.
+    """A rendered picture and its statistics. Made by `render` and `merge`.
 
     Attributes
     ----------
@@ -339,6 +342,8 @@ def render(
     crop: Sequence[int] | None = None,
     aovs: Sequence[str] = (),
     mask: ArrayLike | None = None,
+    checkpoint: FilePath | None = None,
+    checkpoint_seconds: float = 30.0,
     progress: bool | Callable[[Progress], object] | None = None,
 ) -> Image:
     """Renders a scene to a stated accuracy, a fixed count of samples, or a time.
@@ -396,6 +401,14 @@ def render(
         Which pixels of the full frame to render, whatever the crop: those not 0. The others have
         no samples, an infinite half-width and the stop reason "masked". Costs whole cells of 8 x 8
         pixels, as a crop does.
+    checkpoint : path-like, optional
+        A file that the state of the render is written to while it runs, when it is stopped and at
+        its end, and that it goes on from where the file exists, bit for bit as if it had never
+        stopped. ``spp``, ``max_spp`` and ``seconds`` may be larger than the file's and the tolerance
+        smaller: what was sampled is kept. Any other difference is refused. Not with other
+        ``seeds`` than "pixel".
+    checkpoint_seconds : float
+        Between two writes while the render runs; at least 0.
     progress : bool or callable, optional
         True: a bar on stderr. A callable gets a `Progress` after every round and may return
         False to stop.
@@ -410,6 +423,11 @@ def render(
         An option out of its range or of the wrong kind, which is named, before any work.
     MemoryError
         No memory for the film.
+    OSError
+        The checkpoint can't be read, or no file can be written there; before any work.
+    sunfleck.CheckpointError
+        The last write of the checkpoint failed (the old file is left); its ``image`` is the
+        picture. A write that fails earlier is a warning of the logger "sunfleck".
     sunfleck.Error
         Embree reported an error of its own.
 
@@ -459,14 +477,67 @@ def render(
         "tile_size": integer("tile_size", tile_size, bits=32),
         "aovs": _aovs(aovs),
         "mask": _mask(mask),
+        "checkpoint": None if checkpoint is None else given_path(checkpoint),
+        "checkpoint_seconds": number("checkpoint_seconds", checkpoint_seconds),
+        "notice": logging.getLogger("sunfleck").warning,
     }
     if callable(progress):
         tell = progress
-        return Image(_core.render(scene._core, progress=lambda p: tell(p) if p.round_finished else None, **options))
+        return _finished(_core.render(scene._core, progress=lambda p: tell(p) if p.round_finished else None, **options))
     if not progress:
-        return Image(_core.render(scene._core, progress=None, **options))
+        return _finished(_core.render(scene._core, progress=None, **options))
     bar = _Bar()
     try:
-        return Image(_core.render(scene._core, progress=bar, **options))
+        return _finished(_core.render(scene._core, progress=bar, **options))
     finally:
         bar.close()
+
+
+def _finished(film: _core.Film) -> Image:
+    if film.failure:
+        raise CheckpointError(film.failure, Image(film))
+    return Image(film)
+
+
+def merge(images: Sequence[Image | FilePath]) -> Image:
+    """One image of several of the same scene, from their statistics rather than their colours.
+
+    Replicates (the same pixels, each with a seed of its own) merge by their counts of samples;
+    tiles (crops that together fill a rectangle) are put side by side; both at once too.
+
+    Parameters
+    ----------
+    images : sequence of Image or path-like
+        Images, or checkpoint files. One alone is that image, or what the file holds so far.
+
+    Returns
+    -------
+    Image
+        A pixel of n_i samples with half-widths h_i has half-width sqrt(sum (n_i h_i)^2) / sum n_i.
+
+    Raises
+    ------
+    ValueError
+        Images that share a seed and a pixel; other scenes, frame sizes, patterns, filters, stop
+        rules or confidences; crops that leave a gap.
+    TypeError
+        Neither an image nor a path.
+    OSError
+        A file that can't be read, is damaged, or is no checkpoint.
+
+    Notes
+    -----
+    The order of the images decides the last bits. The cost is that of reading them once.
+
+    Examples
+    --------
+    >>> import sunfleck as sf
+    >>> parts = [sf.render(sf.scenes.penumbra(), 32, 24, spp=16, seed=seed) for seed in (1, 2)]
+    >>> merged = sf.merge(parts)
+    >>> int(merged.samples.min()), merged.metadata["merged_seeds"]
+    (32, '1 2')
+    """
+    if isinstance(images, (str, bytes, os.PathLike)) or not isinstance(images, Sequence):
+        raise TypeError(f"images is {images!r}; give a list of images or checkpoint files")
+    films = [image._film if isinstance(image, Image) else _core.load_film(given_path(image)) for image in images]
+    return Image(_core.merge_films(films))

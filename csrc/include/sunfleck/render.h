@@ -113,6 +113,10 @@ typedef struct sf_progress {
  * a return other than 0 stops the render, which keeps what it has. */
 typedef int (*sf_progress_fn)(const sf_progress *progress, void *user);
 
+/* Told what a user should know and no error stops: a checkpoint that can't be written while the
+ * render goes on. Called from the thread that called sf_render; the message lives for the call. */
+typedef void (*sf_notice_fn)(const char *message, void *user);
+
 typedef struct sf_render_options {
     uint32_t width, height;  /* of the full frame, 1 .. SF_MAX_IMAGE_SIZE; default 512 */
     uint32_t crop[4];        /* x0, y0, x1, y1, half open, in pixels of the full frame; all 0: the
@@ -159,6 +163,12 @@ typedef struct sf_render_options {
     size_t mask_stride;      /* bytes from row to row, >= width; 0: width (default) */
     sf_progress_fn progress; /* default NULL */
     void *progress_user;
+    const char *checkpoint_path; /* default NULL: none. Where the file exists the render goes on from
+                                it, and is refused where it was made for another picture; see
+                                sf_render. Needs seeds = pixel */
+    double checkpoint_seconds; /* between writes while the render runs, 0 .. 1e9; default 30 */
+    sf_notice_fn notice;     /* default NULL */
+    void *notice_user;
 } sf_render_options;
 
 sf_render_options sf_render_options_default(void);
@@ -171,8 +181,37 @@ typedef struct sf_film sf_film;
  *
  * With seeds = pixel: the same scene, options and seed give the same film bit for bit, for any
  * number of threads, tile size and division of the work, on one instruction set.
+ *
+ * With checkpoint_path the state of the render is written to that file every checkpoint_seconds,
+ * when it is stopped, and at its end, beside and renamed, so that the file is whole at every
+ * moment. A render that finds the file goes on from it, bit for bit as if it had never stopped;
+ * `seconds` counts the time of all calls together. spp and max_spp may be larger than the file's
+ * and the tolerance smaller: the samples taken are kept, more are added. Any other difference that
+ * decides the picture (scene, options, seed, instruction set, versions) is refused with
+ * SF_STATUS_INVALID_VALUE, a file that is damaged or no checkpoint with SF_STATUS_IO, before any
+ * work; the file is then left as it is. A write that fails while the render runs is a notice, and
+ * the next is tried in its time. If the last write fails the call returns SF_STATUS_IO, and
+ * *film is all the same the finished film, the caller's: the one failure that sets it.
+ *
  * Thread-safe: several renders may run at once, of one scene or several. */
 sf_status sf_render(const sf_scene *scene, const sf_render_options *options, sf_film **film, sf_error *error);
+
+/* The film that a checkpoint holds: pixels that had not stopped are marked interrupted. Fails with
+ * SF_STATUS_IO where the file can't be read, is damaged, or is no checkpoint. Thread-safe. */
+sf_status sf_film_load(const char *path, sf_film **film, sf_error *error);
+
+/* One film of several of the same scene, frame size, pattern, pixel filter, stop rule and confidence:
+ * replicates (other seeds over the same pixels), tiles (crops that together fill a rectangle), or
+ * both. Works on the accumulators: a pixel's counts and moments merge as if its samples had been
+ * added one film after the other, in the order given. Films are independent, so that of n_i samples
+ * with half-widths h_i the merged mean has half-width sqrt(sum (n_i h_i)^2) / sum n_i. A pixel is
+ * met where that is within the smallest tolerance of the films; else it has the least final of its
+ * reasons. Options other than these are described as the first film's.
+ *
+ * Refuses films that differ in what is named above, that have a seed in common where they overlap
+ * (their samples are the same), and crops that leave a gap: SF_STATUS_INVALID_VALUE. The films stay
+ * the caller's. Thread-safe. */
+sf_status sf_film_merge(const sf_film *const *films, size_t count, sf_film **merged, sf_error *error);
 
 /* Frees the film; NULL is allowed. */
 void sf_film_destroy(sf_film *film);
