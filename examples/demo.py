@@ -41,7 +41,9 @@ def engine_on_a_floor() -> sf.Scene:
 def render(name: str, scene: sf.Scene, tolerance: float) -> None:
     """One picture in four files, and what it came to."""
     print(f"{name}: {scene}, every pixel to {tolerance:.1%} of the mean level", flush=True)
-    image = sf.render(scene, SIZE, SIZE, tolerance=tolerance, max_spp=65536, seconds=SECONDS, progress=sys.stderr.isatty())
+    image = sf.render(
+        scene, SIZE, SIZE, tolerance=tolerance, max_spp=65536, seconds=SECONDS, progress=sys.stderr.isatty()
+    )
     image.save(OUT / f"{name}.exr")
     image.save(OUT / f"{name}.png")
     image.save_map("samples", OUT / f"{name}_samples.png")

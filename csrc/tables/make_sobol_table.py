@@ -59,10 +59,13 @@ def dimension_bits(poly: int, initial: list[int]) -> tuple[int, int]:
     value, count = (poly >> 1) & ((1 << (degree - 1)) - 1), degree - 1
     for i in range(2, degree + 1):
         m = initial[i - 1]
-        assert m % 2 == 1 and m < 1 << i
+        assert m % 2 == 1
+        assert m < 1 << i
         value |= (m >> 1) << count
         count += i - 1
-    assert count == (degree - 1) * (degree + 2) // 2 and poly % 2 == 1 and initial[0] == 1
+    assert count == (degree - 1) * (degree + 2) // 2
+    assert poly % 2 == 1
+    assert initial[0] == 1
     return value, count
 
 
@@ -70,7 +73,8 @@ def main() -> None:
     table = np.load(pathlib.Path(scipy.stats.__file__).parent / "_sobol_direction_numbers.npz")
     polys, initials = table["poly"].tolist(), table["vinit"].tolist()
     degrees = [poly.bit_length() - 1 for poly in polys]
-    assert degrees[1:] == sorted(degrees[1:]) and min(degrees[1:]) == 1
+    assert degrees[1:] == sorted(degrees[1:])
+    assert min(degrees[1:]) == 1
 
     words, value, count = [], 0, 0
     first_dimension, first_bit, total = [0] * 20, [0] * 20, 0
