@@ -118,8 +118,8 @@ void sf_aov_add(sf_aov_film *aovs, const sf_batch *batch) {
 /* ---- values ---- */
 
 /* Of the mean of (R+G+B)/3: what the half-width is made of. */
-static float variance_of_mean(const sf_film *film, const sf_film_pixel *pixel) {
-    double error = (double)pixel->half_width / film->factor;
+static float variance_of_mean(const sf_film *film, size_t i) {
+    double error = (double)film->half_width[i] / film->factor;
     return (float)(error * error);
 }
 
@@ -136,7 +136,7 @@ static void resolve_pixel(const sf_film *film, const sf_film_pixel *pixel, size_
         if (!wants(aovs, k)) continue;
         float *value = aovs->values[k] + i * forms[k].components;
         if (!forms[k].summed) {
-            *value = variance_of_mean(film, pixel);
+            *value = variance_of_mean(film, i);
             continue;
         }
         const double *sum = sums + aovs->first_sum[k];

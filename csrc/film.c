@@ -167,7 +167,18 @@ static void leave_out(sf_film *film, size_t i) {
     film->reason[i] = SF_STOP_MASKED;
 }
 
+/* A pixel without a sample. The arrays began as zeros; to leave pages alone saves the half second
+ * in which an interrupted render of a large frame has to end. */
+static void resolve_untouched(sf_film *film, const sf_film_pixel *pixel, size_t i) {
+    film->half_width[i] = INFINITY;
+    film->reason[i] = pixel->reason ? pixel->reason : film->untouched;
+}
+
 static void resolve_pixel(sf_film *film, const sf_film_pixel *pixel, size_t i) {
+    if (pixel->moments.count + pixel->moments.nonfinite == 0) {
+        resolve_untouched(film, pixel, i);
+        return;
+    }
     const sf_vector_moments *moments = &pixel->moments;
     for (int c = 0; c < 3; ++c) film->color[3 * i + c] = (float)moments->mean[c];
     film->alpha[i] = moments->count ? (float)((double)pixel->hits / (double)moments->count) : 0;
@@ -189,10 +200,10 @@ void sf_film_resolve_row(sf_film *film, uint32_t y) {
         resolve_pixel(film, pixel, i);
         row.samples += pixel->moments.count + pixel->moments.nonfinite;
         row.nonfinite += pixel->moments.nonfinite;
-        ++row.reasons[pixel->reason];
-        row.half_width += (double)pixel->half_width;
-        if (!((double)pixel->half_width > row.worst)) continue;
-        row.worst = (double)pixel->half_width;
+        ++row.reasons[film->reason[i]];
+        row.half_width += (double)film->half_width[i];
+        if (!((double)film->half_width[i] > row.worst)) continue;
+        row.worst = (double)film->half_width[i];
         row.worst_x = x + film->crop_x0;
     }
     film->rows[y] = row;
@@ -303,7 +314,7 @@ static void describe_options(sf_film *film, const sf_render_options *o) {
     describe(film, "tile_size", "%" PRIu32, o->tile_size);
     char aovs[SF_AOV_TEXT_SIZE], mask[SF_MASK_TEXT_SIZE];
     sf_aov_list(o->aovs, aovs);
-    sf_mask_describe(o, film, mask);
+    sf_mask_describe(film, mask);
     describe(film, "aovs", "%s", aovs);
     describe(film, "mask", "%s", mask);
 }

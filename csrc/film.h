@@ -79,6 +79,7 @@ struct sf_film {
     uint8_t *mask;                          /* of the crop: 1 where the pixel counts; NULL: all do */
     uint64_t counted;                       /* pixels of the crop that do */
     uint64_t mask_hash;
+    uint8_t untouched;                      /* the sf_stop_reason of pixels without a sample */
     double factor;                          /* standard errors in a half-width */
     sf_attribute *attributes;
     size_t attribute_count;

@@ -59,8 +59,8 @@ void sf_mask_apply(const sf_render_options *o, sf_film *film) {
             film->mask[(size_t)y * film->crop_width + x] = traced(o, x + film->crop_x0, y + film->crop_y0);
 }
 
-void sf_mask_describe(const sf_render_options *o, const sf_film *film, char text[SF_MASK_TEXT_SIZE]) {
-    if (o->mask)
+void sf_mask_describe(const sf_film *film, char text[SF_MASK_TEXT_SIZE]) {
+    if (film->mask)
         snprintf(text, SF_MASK_TEXT_SIZE, "%" PRIu64 " pixels, hash %016" PRIx64, film->counted, film->mask_hash);
     else
         snprintf(text, SF_MASK_TEXT_SIZE, "none");

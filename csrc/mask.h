@@ -22,6 +22,6 @@ void sf_mask_apply(const sf_render_options *options, sf_film *film);
 
 /* Writes "none", or how many pixels of the crop the mask leaves and a hash of it. */
 #define SF_MASK_TEXT_SIZE 64
-void sf_mask_describe(const sf_render_options *options, const sf_film *film, char text[SF_MASK_TEXT_SIZE]);
+void sf_mask_describe(const sf_film *film, char text[SF_MASK_TEXT_SIZE]);
 
 #endif

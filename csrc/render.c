@@ -369,6 +369,7 @@ static bool decide_pixel(const render *r, uint32_t x, uint32_t y, size_t state) 
     const sf_film_summary *summary = &r->film->summary;
     bool full = taken(pixel) + o->start >= most_samples(r);
     if (o->start + taken(pixel) > r->to && state == RUNNING) return false; /* decided here before, by an easier tolerance */
+    if (taken(pixel) == 0 && state != RUNNING) return true; /* not a page of it is touched; see close_all */
     pixel->half_width = sf_stop_half_width(r->film, o, x, y, r->z);
     bool met = !o->spp && summary->tolerance >= 0 && taken(pixel) >= o->min_spp &&
                (double)pixel->half_width <= summary->tolerance;
@@ -594,6 +595,7 @@ static uint32_t round_end(const render *r) {
 static void close_all(render *r) {
     if (sf_atomic_load(&r->state) == RUNNING) sf_atomic_store(&r->state, SPENT);
     r->sampled = sf_atomic_load(&r->state);
+    r->film->untouched = (uint8_t)unmet_reason(r, false, r->sampled);
     memcpy(r->active, r->open, cell_count(r) * sizeof *r->active);
     list_tiles(r);
     sf_pool_run(r->pool, r->tile_count, decide_tile, wake, r);
