@@ -369,6 +369,7 @@ static bool decide_pixel(const render *r, uint32_t x, uint32_t y, size_t state) 
     const sf_film_summary *summary = &r->film->summary;
     bool full = taken(pixel) + o->start >= most_samples(r);
     if (o->start + taken(pixel) > r->to && state == RUNNING) return false; /* decided here before, by an easier tolerance */
+    if (o->spp && !full && state == RUNNING) return false; /* nothing to tell before the end */
     if (taken(pixel) == 0 && state != RUNNING) return true; /* not a page of it is touched; see close_all */
     pixel->half_width = sf_stop_half_width(r->film, o, x, y, r->z);
     bool met = !o->spp && summary->tolerance >= 0 && taken(pixel) >= o->min_spp &&
