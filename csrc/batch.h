@@ -23,6 +23,9 @@ typedef struct sf_camera_frame {
     float aperture_radius, focus_distance;
 } sf_camera_frame;
 
+/* camera.c: the frame of a camera whose picture has that many pixels. */
+sf_camera_frame sf_camera_frame_of(const sf_camera *camera, uint32_t width, uint32_t height);
+
 /* What the batches of a render have in common; immutable while it runs. */
 typedef struct sf_render_context {
     const sf_scene *scene;

@@ -1,0 +1,238 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "rounds.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- progress ---- */
+
+uint64_t sf_rounds_samples(const sf_rounds *r) {
+    uint64_t samples = 0;
+    for (uint32_t i = 0; i < r->options.threads; ++i) samples += sf_atomic_load(&r->workers[i].samples);
+    return samples;
+}
+
+static void report(sf_rounds *r, bool round_finished) {
+    if (!r->options.progress) return;
+    sf_progress *p = &r->progress;
+    p->samples = sf_rounds_samples(r);
+    p->seconds = sf_seconds_now() - r->start;
+    p->round_finished = round_finished;
+    if (r->options.progress(p, r->options.progress_user) != 0) sf_atomic_store(&r->state, SF_INTERRUPTED);
+}
+
+void sf_rounds_wake(void *user) { report(user, false); }
+
+static void report_round(sf_rounds *r) {
+    sf_progress *p = &r->progress;
+    p->round = r->film->summary.rounds;
+    p->pixels_done = p->pixels_met = 0;
+    for (uint32_t i = 0; i < r->options.threads; ++i) {
+        p->pixels_done += r->workers[i].done;
+        p->pixels_met += r->workers[i].met;
+    }
+    p->tolerance = fmax(r->film->summary.tolerance, 0);
+    report(r, true);
+}
+
+/* ---- checkpoints ---- */
+
+sf_checkpoint sf_rounds_checkpoint(sf_rounds *r) {
+    return (sf_checkpoint){.film = r->film, .open = r->open, .active = r->active, .cells = sf_rounds_cell_count(r)};
+}
+
+/* Writes the state; a failure is a notice, and the next write is tried in its time. */
+static void save_checkpoint(sf_rounds *r) {
+    const sf_render_options *o = &r->options;
+    if (!o->checkpoint_path) return;
+    const sf_film_summary *summary = &r->film->summary;
+    sf_checkpoint checkpoint = sf_rounds_checkpoint(r);
+    checkpoint.state = (sf_round_state){.from = r->from,
+                                        .to = r->to,
+                                        .look = r->look,
+                                        .in_lap = r->in_lap,
+                                        .rounds = summary->rounds,
+                                        .level_fixed = r->level_fixed,
+                                        .level = summary->level,
+                                        .tolerance = summary->tolerance,
+                                        .target = r->target,
+                                        .seconds = sf_seconds_now() - r->start,
+                                        .traced_samples = sf_rounds_samples(r)};
+    r->checkpoint_status = sf_checkpoint_save(&checkpoint, o->checkpoint_path, &r->checkpoint_error);
+    if (r->checkpoint_status && o->notice) o->notice(r->checkpoint_error.message, o->notice_user);
+    r->checkpoint_due = sf_seconds_now() + o->checkpoint_seconds;
+}
+
+static bool checkpoint_is_due(const sf_rounds *r) {
+    return r->options.checkpoint_path && sf_seconds_now() >= r->checkpoint_due;
+}
+
+static void wake_sampling(void *user) {
+    sf_rounds *r = user;
+    report(r, false);
+    if (checkpoint_is_due(r) && sf_atomic_load(&r->state) == SF_RUNNING) sf_atomic_store(&r->state, SF_PAUSED);
+}
+
+/* Takes the round's samples. A stop leaves the round where it is and writes that down, before
+ * anything is decided on it; so does a checkpoint that is due, after which the round goes on. */
+static void sample_round(sf_rounds *r) {
+    for (;;) {
+        sf_pool_run(r->pool, r->tile_count, sf_rounds_sample_tile, wake_sampling, r);
+        r->sampled = sf_atomic_load(&r->state);
+        if (r->sampled == SF_RUNNING) return;
+        r->ahead = r->to > r->ahead ? r->to : r->ahead;
+        save_checkpoint(r);
+        if (r->sampled != SF_PAUSED) return;
+        sf_atomic_store(&r->state, SF_RUNNING);
+    }
+}
+
+/* ---- decisions ---- */
+
+static void look_at_pool(void *user, unsigned worker, size_t item) {
+    (void)worker;
+    sf_rounds *r = user;
+    sf_stop_look_at_pool(r->film, (uint32_t)item, r->look, r->lap);
+}
+
+/* Why a pixel that is not met is closed. */
+static sf_stop_reason unmet_reason(const sf_rounds *r, bool full, size_t state) {
+    if (full) return r->options.spp ? SF_STOP_FIXED : SF_STOP_MAX_SAMPLES;
+    if (state == SF_OUT_OF_TIME) return SF_STOP_OUT_OF_TIME;
+    return state == SF_INTERRUPTED ? SF_STOP_INTERRUPTED : SF_STOP_MAX_SAMPLES; /* a budget of samples is spent */
+}
+
+/* Whether the pixel is done, and why. */
+static bool decide_pixel(const sf_rounds *r, uint32_t x, uint32_t y, size_t state) {
+    sf_film_pixel *pixel = r->film->pixels + (size_t)y * r->film->width + x;
+    const sf_render_options *o = &r->options;
+    const sf_film_summary *summary = &r->film->summary;
+    bool full = sf_film_taken(pixel) + o->start >= sf_rounds_most(r);
+    if (o->start + sf_film_taken(pixel) > r->to && state == SF_RUNNING) return false; /* decided here before, by an easier tolerance */
+    if (o->spp && !full && state == SF_RUNNING) return false; /* nothing to tell before the end */
+    if (sf_film_taken(pixel) == 0 && state != SF_RUNNING) return true; /* not a page of it is touched; see close_all */
+    pixel->half_width = sf_stop_half_width(r->film, o, x, y, r->z);
+    bool met = !o->spp && summary->tolerance >= 0 && sf_film_taken(pixel) >= o->min_spp &&
+               (double)pixel->half_width <= summary->tolerance;
+    if (!met && !full && state == SF_RUNNING) return false;
+    sf_stop_reason reason = met ? SF_STOP_MET : unmet_reason(r, full, state);
+    pixel->reason = (uint8_t)(pixel->moments.nonfinite ? SF_STOP_SUSPICIOUS : reason);
+    return true;
+}
+
+static void decide_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
+    (void)worker;
+    for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m)
+        if (r->active[cell] >> m & 1u && decide_pixel(r, sf_rounds_x(r, cell, m), sf_rounds_y(r, cell, m), r->sampled))
+            r->open[cell] &= ~(UINT64_C(1) << m);
+}
+
+/* Whether the pixel is of the picture, not of the margin that was traced with it. */
+static bool counts(const sf_film *film, const sf_film_pixel *pixel) {
+    uint32_t i = (uint32_t)(pixel - film->pixels);
+    uint32_t x = i % film->width + film->x0 - film->crop_x0, y = i / film->width + film->y0 - film->crop_y0;
+    return x < film->crop_width && y < film->crop_height && sf_film_counts(film, x, y);
+}
+
+/* Decides, and counts the pixels of the picture that are done. */
+static void settle_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
+    uint64_t before = r->active[cell];
+    decide_cell(r, worker, cell);
+    uint64_t done = before & ~r->open[cell];
+    for (uint32_t m = 0; done; ++m, done >>= 1) {
+        const sf_film_pixel *pixel = sf_rounds_pixel(r, cell, m);
+        if (!(done & 1u) || !counts(r->film, pixel)) continue;
+        ++worker->done;
+        worker->met += pixel->reason == SF_STOP_MET;
+    }
+}
+
+static void decide_tile(void *user, unsigned worker, size_t item) {
+    sf_rounds *r = user;
+    sf_rounds_each_cell(r, worker, r->tiles[item], r->active, settle_cell);
+}
+
+static void sum_row(void *user, unsigned worker, size_t item) {
+    (void)worker;
+    sf_film_sum_row(((sf_rounds *)user)->film, (uint32_t)item);
+}
+
+void sf_rounds_measure_level(sf_rounds *r) {
+    sf_pool_run(r->pool, r->film->crop_height, sum_row, sf_rounds_wake, r);
+    r->film->summary.level = sf_film_level(r->film);
+}
+
+/* The tolerance at the level that was fixed. A negative one: none was asked. */
+void sf_rounds_set_tolerance(sf_rounds *r) {
+    const sf_render_options *o = &r->options;
+    sf_film_summary *summary = &r->film->summary;
+    if (o->relative_tolerance > 0 || o->absolute_tolerance > 0)
+        summary->tolerance = fmax(o->absolute_tolerance, o->relative_tolerance * summary->level);
+}
+
+/* Fixes level and tolerance after the first min_spp samples. */
+static void fix_tolerance(sf_rounds *r) {
+    const sf_render_options *o = &r->options;
+    if ((r->to < o->min_spp && r->to < sf_rounds_most(r)) || r->level_fixed) return;
+    r->level_fixed = true;
+    sf_rounds_measure_level(r);
+    sf_rounds_set_tolerance(r);
+}
+
+/* Looks at the lap's pixels where the rule can, and closes those that are done. */
+static void decide(sf_rounds *r) {
+    fix_tolerance(r);
+    if (r->lap.levels && r->to == r->look && sf_stop_is_look(&r->options, r->look))
+        sf_pool_run(r->pool, sf_stop_pool_count(r->film), look_at_pool, sf_rounds_wake, r);
+    sf_pool_run(r->pool, r->tile_count, decide_tile, sf_rounds_wake, r);
+}
+
+/* ---- rounds ---- */
+
+/* Where the next round of the lap ends: with a clock to watch, rounds are short. */
+static uint32_t round_end(const sf_rounds *r) {
+    uint32_t end = r->look < sf_rounds_most(r) ? r->look : sf_rounds_most(r);
+    if (r->options.seconds == 0) return end;
+    uint32_t step = r->from / 4 / SF_LANES * SF_LANES;
+    step = step < SF_LANES ? SF_LANES : step > 256 ? 256 : step;
+    uint32_t target = r->from / SF_LANES * SF_LANES + step;
+    return target < end ? target : end;
+}
+
+/* Closes what is still open: time is up, a budget is spent, or the caller asked to stop. */
+static void close_all(sf_rounds *r) {
+    if (sf_atomic_load(&r->state) == SF_RUNNING) sf_atomic_store(&r->state, SF_SPENT);
+    r->sampled = sf_atomic_load(&r->state);
+    r->film->untouched = (uint8_t)unmet_reason(r, false, r->sampled);
+    memcpy(r->active, r->open, sf_rounds_cell_count(r) * sizeof *r->active);
+    sf_rounds_list_tiles(r);
+    sf_pool_run(r->pool, r->tile_count, decide_tile, sf_rounds_wake, r);
+}
+
+/* One round of the lap. A stop within it leaves it as it is, written down. */
+static void run_round(sf_rounds *r) {
+    if (r->from == r->to) r->to = round_end(r);
+    sample_round(r);
+    if (r->sampled != SF_RUNNING) return;
+    r->in_lap = !(r->to == r->look || r->to == sf_rounds_most(r));
+    if (!r->in_lap) decide(r);
+    r->from = r->to;
+    ++r->film->summary.rounds;
+    report_round(r);
+    if (sf_atomic_load(&r->state) != SF_RUNNING || checkpoint_is_due(r)) save_checkpoint(r);
+}
+
+void sf_rounds_run(sf_rounds *r) {
+    while (sf_atomic_load(&r->state) == SF_RUNNING) {
+        if (!r->in_lap && !sf_rounds_begin_lap(r)) {
+            r->in_lap = false;
+            save_checkpoint(r);
+            break;
+        }
+        run_round(r);
+    }
+    close_all(r);
+    if (r->film->summary.tolerance < 0) r->film->summary.tolerance = 0;
+}

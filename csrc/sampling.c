@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* A round's samples: blocks of the cells' pixels gathered into batches, run, and added to the film. */
+
+#include "aov.h"
+#include "rounds.h"
+
+/* Adds the block to its pixel's statistics, and to what the stopping rule keeps. */
+static void add_block(sf_rounds *r, const sf_block *block, const sf_block_statistics *statistics) {
+    sf_film_pixel *pixel = r->film->pixels + block->pixel;
+    bool lap_begins = r->lap.levels && r->from && sf_film_taken(pixel) == r->from && sf_stop_is_look(&r->options, r->from);
+    if (lap_begins) sf_dyadic_begin(pixel);
+    sf_film_add(pixel, statistics);
+    const double *means = statistics->moments.mean;
+    double mean = (means[0] + means[1] + means[2]) / 3;
+    if (r->lap.levels) sf_dyadic_add(&pixel->evidence.dyadic, mean, block->number, r->lap);
+    if (r->options.stop == SF_STOP_REPLICATES && block->number % SF_REPLICATES < SF_REPLICATES - 1)
+        pixel->evidence.replicates[block->number % SF_REPLICATES] += mean;
+}
+
+/* Runs the blocks gathered so far and adds them to the film, in their order. */
+static void flush_batch(sf_rounds *r, sf_rounds_worker *worker) {
+    sf_batch *batch = &worker->batch;
+    if (batch->block_count == 0) return;
+    sf_batch_run(batch, &r->context);
+    size_t samples = 0;
+    for (uint32_t i = 0; i < batch->block_count; ++i) {
+        add_block(r, batch->blocks + i, batch->statistics + i);
+        samples += sf_count_bits(batch->blocks[i].active);
+    }
+    if (r->film->aovs) sf_aov_add(r->film->aovs, batch);
+    batch->block_count = 0;
+    sf_atomic_fetch_add(&worker->samples, samples);
+    if (r->deadline > 0 && sf_seconds_now() >= r->deadline) sf_atomic_store(&r->state, SF_OUT_OF_TIME);
+}
+
+/* The block of pixel m that starts at sample `n`. */
+static sf_block make_block(const sf_rounds *r, uint32_t cell, uint32_t m, uint64_t key, uint32_t n) {
+    uint32_t x = sf_rounds_x(r, cell, m), y = sf_rounds_y(r, cell, m);
+    uint32_t base = n / SF_LANES * SF_LANES, end = r->to - base < SF_LANES ? r->to - base : SF_LANES;
+    sf_block block = {.key = key,
+                      .base = base,
+                      .active = ((1u << end) - 1) & ~((1u << (n - base)) - 1),
+                      .x = x + r->film->x0,
+                      .y = y + r->film->y0,
+                      .pixel = y * r->film->width + x,
+                      .number = base / SF_LANES};
+    if (r->options.stop == SF_STOP_REPLICATES) { /* replicates take turns by the block */
+        block.key = sf_hash64(key, block.number % SF_REPLICATES + 1);
+        block.base = block.number / SF_REPLICATES * SF_LANES;
+    }
+    return block;
+}
+
+/* Where the block of pixel m that holds sample `n` goes on: after the samples that the pixel took
+ * before a pause or a stop. At or past the block's end there is nothing left to take. */
+static uint32_t skip_taken(const sf_rounds *r, uint32_t cell, uint32_t m, uint32_t n) {
+    if (r->from >= r->ahead) return n;
+    uint64_t next = r->options.start + sf_film_taken(sf_rounds_pixel(r, cell, m));
+    return next > n ? (uint32_t)next : n;
+}
+
+static uint32_t block_end(const sf_rounds *r, uint32_t n) {
+    uint32_t end = n / SF_LANES * SF_LANES + SF_LANES;
+    return end < r->to ? end : r->to;
+}
+
+static void choose_keys(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell, uint64_t active, uint64_t keys[SF_CELL_PIXELS]) {
+    for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m) {
+        if (!(active >> m & 1u)) continue;
+        uint64_t x = sf_rounds_x(r, cell, m) + r->film->x0, y = sf_rounds_y(r, cell, m) + r->film->y0;
+        keys[m] = r->options.seeds == SF_SEEDS_PIXEL ? sf_hash64(r->options.seed, y << 32 | x)
+                                                     : sf_rng_next_raw(&worker->stream);
+    }
+}
+
+static void sample_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
+    if (sf_atomic_load(&r->state) != SF_RUNNING) return;
+    uint64_t active = r->active[cell], keys[SF_CELL_PIXELS];
+    sf_batch *batch = &worker->batch;
+    choose_keys(r, worker, cell, active, keys);
+    for (uint32_t n = r->from; n < r->to; n = n / SF_LANES * SF_LANES + SF_LANES)
+        for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m) {
+            if (!(active >> m & 1u)) continue;
+            uint32_t first = skip_taken(r, cell, m, n);
+            if (first >= block_end(r, n)) continue;
+            batch->blocks[batch->block_count++] = make_block(r, cell, m, keys[m], first);
+            if (batch->block_count < SF_BLOCKS) continue;
+            flush_batch(r, worker);
+            if (sf_atomic_load(&r->state) != SF_RUNNING) return;
+        }
+    flush_batch(r, worker);
+}
+
+void sf_rounds_sample_tile(void *user, unsigned worker, size_t item) {
+    sf_rounds *r = user;
+    if (sf_atomic_load(&r->state) == SF_RUNNING) sf_rounds_each_cell(r, worker, r->tiles[item], r->active, sample_cell);
+}
