@@ -33,3 +33,15 @@ def test_snippet_runs(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         exec(compile(SNIPPETS[name], name, "exec"), {"__name__": "__main__"})
+
+
+def test_what_the_pages_link_to_is_there() -> None:
+    pages = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")]
+    links = [
+        (page, link)
+        for page in pages
+        for link in re.findall(r"\]\(([^)#\s]+)", page.read_text(encoding="utf-8"))
+        if "://" not in link
+    ]
+    assert len(links) > 20
+    assert not [f"{page.name}: {link}" for page, link in links if not (page.parent / link).exists()]
