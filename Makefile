@@ -53,7 +53,7 @@ lint: packages-test .venv/.lint
 	cmake --build build/lint
 	scripts/check-format.sh
 
-bench: packages-bench .venv/.demo build/reference/penumbra_256.npy build/reference/cornell_256.npy
+bench: packages-bench .venv/.test build/reference/penumbra_256.npy build/reference/cornell_256.npy
 	$(with_mitsuba) bench/render.py
 	$(venv) bench/startup.py
 	$(venv) bench/sampling.py
