@@ -245,6 +245,9 @@ sf_status sf_point_set_init(sf_point_set *set, const sf_points_options *options,
     if (status == SF_STATUS_OK) status = check_pad(options, error);
     if (status != SF_STATUS_OK) return status;
     set->method = &methods[options->pattern];
+    if (set->method->needs_total && options->total > set->method->max_count)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "total is %" PRIu64 "; %s has up to %" PRIu64 " points",
+                       options->total, set->method->name, set->method->max_count);
     set->options = *options;
     if (options->scramble == SF_SCRAMBLE_DEFAULT) set->options.scramble = set->method->default_scramble;
     if (!set->method->prepare || (set->method->needs_total && !options->total)) return SF_STATUS_OK;

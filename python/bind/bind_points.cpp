@@ -43,7 +43,7 @@ sf_crew *shared_crew() {
 template <class T, sf_status (*Fill)(const sf_points_options *, size_t, T *, sf_error *)>
 void fill(nb::ndarray<T, nb::ndim<2>, nb::c_contig, nb::device::cpu> out, const std::string &pattern,
           const std::string &scramble, uint32_t dims, uint32_t pad, uint64_t seed, uint64_t first,
-          uint32_t threads) {
+          uint64_t total, uint32_t threads) {
     sf_points_options options = sf_points_options_default();
     options.pattern = find_pattern(pattern);
     options.scramble = find_scramble(scramble);
@@ -51,6 +51,7 @@ void fill(nb::ndarray<T, nb::ndim<2>, nb::c_contig, nb::device::cpu> out, const 
     options.pad = pad;
     options.seed = seed;
     options.first = first;
+    options.total = total;
     options.threads = threads;
     options.crew = threads == 1 ? nullptr : shared_crew();
     if (out.shape(1) != dims) throw nb::value_error("out must have a column for each dimension");
@@ -65,11 +66,11 @@ void bind_points(nb::module_ &m) {
     m.def("scrambles", [] { return listed(sf_scramble_name, sf_scramble_description); });
 
     m.def("fill_points", &fill<float, sf_points_fill_f32>, "out"_a.noconvert(), "pattern"_a, "scramble"_a, "dims"_a,
-          "pad"_a, "seed"_a, "first"_a, "threads"_a);
+          "pad"_a, "seed"_a, "first"_a, "total"_a, "threads"_a);
     m.def("fill_points", &fill<double, sf_points_fill_f64>, "out"_a.noconvert(), "pattern"_a, "scramble"_a, "dims"_a,
-          "pad"_a, "seed"_a, "first"_a, "threads"_a);
+          "pad"_a, "seed"_a, "first"_a, "total"_a, "threads"_a);
     m.def("fill_points", &fill<uint32_t, sf_points_fill_u32>, "out"_a.noconvert(), "pattern"_a, "scramble"_a, "dims"_a,
-          "pad"_a, "seed"_a, "first"_a, "threads"_a);
+          "pad"_a, "seed"_a, "first"_a, "total"_a, "threads"_a);
 
     m.def(
         "valid_counts",

@@ -69,7 +69,7 @@ def one_of(name: str, value: DTypeLike, allowed: Sequence[str]) -> np.dtype[Any]
         dtype = np.dtype(value)
     except TypeError:
         raise TypeError(f"{name} is {value!r}; give {' or '.join(allowed)}") from None
-    if dtype.name not in allowed or not dtype.isnative:
+    if dtype.type.__name__ not in allowed or not dtype.isnative:
         raise TypeError(f"{name} is {value!r}; give {' or '.join(allowed)}")
     return dtype
 

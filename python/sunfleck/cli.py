@@ -54,6 +54,8 @@ examples:
   sunfleck points sobol -n 16            prints 16 points as text, one a line
   sunfleck points jittered -n 1024 -d 2 -o points.npy
   sunfleck points halton -n 1000 -d 5 --scramble none -o points.csv
+  sunfleck points sobol -n 1024 -d 100 --pad 2 --scramble nested --seed 7 -o pairs.npy
+  sunfleck points latin -n 500 --start 500 --total 1000 -o second_half.npy
 
 patterns:
 """
@@ -128,7 +130,11 @@ def _add_points(commands: argparse._SubParsersAction[_Parser]) -> None:
     add("-d", type=int, default=2, metavar="D", help="dimensions; default 2")
     add("-o", "--output", default="-", metavar="FILE", help=".npy, .csv, .txt, or - for text on standard output")
     add("--seed", type=int, default=0, metavar="N", help="default 0")
-    add("--scramble", default="default", metavar="NAME", help="owen, permuted, none; default: the pattern's own")
+    scrambles = ", ".join(name for name in sf.SCRAMBLES if name != "default")
+    add("--scramble", default="default", metavar="NAME", help=f"{scrambles}; default: the pattern's own")
+    add("--pad", type=int, default=0, metavar="N", help="2 or 4, of sobol and sz: sets of N dimensions side by side")
+    add("--start", type=int, default=0, metavar="K", help="index of the first point; default 0")
+    add("--total", type=int, metavar="M", help="points of the whole set, of which these are a part; default K + N")
 
 
 def _add_plan(commands: argparse._SubParsersAction[_Parser]) -> None:
@@ -229,7 +235,16 @@ def _points(given: argparse.Namespace) -> int:
     scramble = None if given.scramble == "none" else given.scramble
     if given.output != "-":
         writable_target(given.output, "points", POINT_TYPES)
-    points = sf.points(given.pattern, given.n, given.d, seed=given.seed, scramble=scramble)
+    points = sf.points(
+        given.pattern,
+        given.n,
+        given.d,
+        seed=given.seed,
+        scramble=scramble,
+        pad=given.pad,
+        start=given.start,
+        total=given.total,
+    )
     _write_points(points, given.output)
     return 0
 

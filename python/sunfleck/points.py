@@ -31,14 +31,15 @@ def points(
     scramble: str | None = "default",
     pad: int = 0,
     start: int = 0,
+    total: int | None = None,
     dtype: DTypeLike = "float32",
     threads: int | None = None,
     out: NDArray[Any] | None = None,
 ) -> NDArray[Any]:
     """Points ``start`` to ``start + n - 1`` of a pattern in [0,1)^d.
 
-    Point i depends only on (pattern, d, scramble, seed, i): calls may be split, reordered and
-    run on any number of threads with the same bits.
+    Point i depends only on (pattern, d, scramble, pad, seed, i), and on `total` where the pattern
+    needs it: calls may be split, reordered and run on any number of threads with the same bits.
 
     Parameters
     ----------
@@ -46,7 +47,7 @@ def points(
         One of `sunfleck.PATTERNS`.
     n : int
         How many points. uniform, jittered, multijittered and orthogonal take some counts only,
-        see `valid_counts`; their total, and that of latin and hammersley, is ``start + n``.
+        see `valid_counts`: of `total`, where that is given.
     d : int
         Dimensions of a point, at least 1; at most 21,201 for sobol, 65,536 for sz and where `pad`
         is given, 6,542 for halton, 4,391 for lattice, sqrt(n) + 1 for orthogonal.
@@ -62,6 +63,11 @@ def points(
         a set of its own, the first in the pattern's order, the others shuffled. 0: no padding.
     start : int
         Index of the first point.
+    total : int, optional
+        How many points the whole set has, of which these are ``start`` to ``start + n - 1``:
+        uniform, jittered, latin, multijittered, orthogonal and hammersley differ by it, so that
+        parts of one set are made with the same `total`. The others do not, and only refuse
+        points beyond it. None: ``start + n``.
     dtype : "float32", "float64" or "uint32"
         24 or 53 bits a value, or the 32-bit words that the floats come from.
     threads : int, optional
@@ -113,6 +119,8 @@ def points(
     n, start = integer("n", n), integer("start", start)
     d = integer("d", d, bits=32)
     kind = one_of("dtype", dtype, ("float32", "float64", "uint32"))
+    if total is not None and integer("total", total) == 0:  # C's word for start + n
+        raise ValueError("total is 0; give at least 1, or None for start + n")
     if threads is not None and integer("threads", threads, bits=32) == 0:  # C's word for all processors
         raise ValueError("threads is 0; give at least 1, or None for one for each processor")
     options: dict[str, Any] = {
@@ -122,6 +130,7 @@ def points(
         "pad": integer("pad", pad, bits=32),
         "seed": integer("seed", seed),
         "first": start,
+        "total": total or 0,
         "threads": threads or 0,
     }
     array = output_array(out, shape_of("(n, d)", (n, d)), kind)

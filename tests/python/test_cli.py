@@ -118,6 +118,19 @@ def test_points(tmp_path: Path) -> None:
     assert run("points", "sobol", "-n", "2", "--scramble", "none").stdout == "0,0\n0.5,0.5\n"
 
 
+def test_points_take_every_option_of_sf_points() -> None:
+    given = ["--scramble", "nested", "--pad", "2", "--start", "16", "--seed", "5"]
+    printed = run("points", "sz", "-n", "16", "-d", "5", *given).stdout
+    expected = sf.points("sz", 16, 5, scramble="nested", pad=2, start=16, seed=5)
+    assert np.array_equal(np.loadtxt(printed.splitlines(), np.float32, delimiter=","), expected)
+    printed = run("points", "jittered", "-n", "6", "--start", "10", "--total", "16").stdout
+    expected = sf.points("jittered", 16)[10:]
+    assert np.array_equal(np.loadtxt(printed.splitlines(), np.float32, delimiter=","), expected)
+    assert_refused(run("points", "sobol", "-n", "4", "--pad", "3"), "pad is 3", "0, 2 or 4")
+    assert_refused(run("points", "sobol", "-n", "4", "--start", "-1"), "start is -1")
+    assert_refused(run("points", "latin", "-n", "4", "--total", "3"), "a total of 3")
+
+
 def test_points_warn_once_in_one_line() -> None:
     result = run("points", "sobol", "-n", "3")
     assert result.returncode == 0
@@ -143,7 +156,7 @@ def test_plan() -> None:
     [
         (["--help"], ["render", "points", "plan", "examples:"]),
         (["render", "--help"], ["examples:", "--tolerance", "--crop", "Ctrl-C", "penumbra, defocus, cornell", ".glb"]),
-        (["points", "--help"], ["examples:", *sf.PATTERNS]),
+        (["points", "--help"], ["examples:", "--pad", "--start", "--total", *sf.SCRAMBLES, *sf.PATTERNS]),
         (["plan", "--help"], ["examples:"]),
         (["--version"], [f"sunfleck {sf.__version__}"]),
     ],

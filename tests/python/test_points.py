@@ -190,3 +190,28 @@ def test_out_that_would_need_a_copy_is_refused(out: Any, error: type[Exception])
 def test_bad_input_is_named(options: dict[str, Any], error: Any, match: str) -> None:
     with pytest.raises(error, match=match):
         sf.points(**{"pattern": "sobol", "n": 16, "d": 2, **options})
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_parts_of_a_total_are_the_whole(name: str) -> None:
+    whole = sf.points(name, N, D, seed=3)
+    parts = [sf.points(name, 16, D, seed=3, start=start, total=N) for start in range(0, N, 16)]
+    assert np.array_equal(np.concatenate(parts), whole)
+    first = sf.points(name, N // 4, D, seed=3, start=0, total=N)
+    assert np.array_equal(first, whole[: N // 4])
+
+
+@pytest.mark.parametrize(
+    ("total", "named"),
+    [(0, "total is 0"), (-1, "total is -1"), (2**64, "total is 18446744073709551616"), (9, "total of 9")],
+)
+def test_bad_totals(total: int, named: str) -> None:
+    with pytest.raises(ValueError, match=named):
+        sf.points("latin", 10, total=total)
+
+
+def test_totals_that_a_pattern_cannot_have() -> None:
+    with pytest.raises(ValueError, match=r"992.*999"):
+        sf.points("jittered", 4, total=997)
+    with pytest.raises(ValueError, match="latin has up to 4294967296"):
+        sf.points("latin", 4, total=2**32 + 1)
