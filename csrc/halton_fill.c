@@ -14,12 +14,12 @@
 
 enum {
     MAX_TABLE = 8192, /* beyond, what belongs to the least digits is computed each time */
-    RUN = 256         /* coordinates of a dimension at a time */
+    RUN = SF_HALTON_RUN /* coordinates of a dimension at a time */
 };
 
 struct sf_halton_tables {
     sf_halton_axis axis;
-    uint64_t *first_parts; /* [block]; NULL: computed, or scrambled */
+    uint64_t *first_parts; /* [block + SF_HALTON_ROOM]; NULL: computed, or scrambled */
     sf_owen_node *nodes;   /* [block], of depth low_digits; NULL: computed, or not scrambled */
     uint32_t *digits;      /* [base]: at place low_digits; NULL: computed */
 };
@@ -53,7 +53,7 @@ static sf_status tabulate(sf_halton_tables *table, uint64_t total, sf_error *err
     uint32_t block = axis->block;
     if (block > MAX_TABLE || block > total) return SF_STATUS_OK;
     int scrambled = axis->scramble == SF_SCRAMBLE_OWEN;
-    size_t bytes = block * (scrambled ? sizeof *table->nodes : sizeof *table->first_parts);
+    size_t bytes = scrambled ? block * sizeof *table->nodes : (block + SF_HALTON_ROOM) * sizeof *table->first_parts;
     void *memory = sf_aligned_alloc(bytes);
     if (!memory) return sf_fail_memory(error, "the tables of halton", bytes);
     if (scrambled) {
@@ -61,6 +61,7 @@ static sf_status tabulate(sf_halton_tables *table, uint64_t total, sf_error *err
         for (uint32_t i = 0; i < block; ++i) table->nodes[i] = node_of(axis, i);
         return SF_STATUS_OK;
     }
+    memset(memory, 0, bytes);
     table->first_parts = memory;
     for (uint32_t i = 0; i < block; ++i) table->first_parts[i] = sf_halton_first_part(axis, i);
     if (total / block < axis->base) return SF_STATUS_OK;
@@ -148,38 +149,43 @@ static const uint64_t *parts_of(const sf_halton_tables *table, const sf_halton_k
     return scratch;
 }
 
-/* One dimension of rows that are `dims` wide. */
-static void fill_axis(const sf_halton_tables *table, const sf_halton_kernels *kernels, axis_cursor *at, size_t rows,
-                      uint32_t dims, uint32_t *high, uint32_t *low) {
+/* One dimension of up to SF_HALTON_RUN rows. Where the first parts are tabulated whole vectors are
+ * made: what is too much the next block, or the room behind the column, takes. */
+static void fill_column(const sf_halton_tables *table, const sf_halton_kernels *kernels, axis_cursor *at, size_t rows,
+                        uint32_t *high, uint32_t *low) {
     SF_ALIGNED(uint64_t) scratch[RUN];
-    SF_ALIGNED(uint32_t) column[2][RUN];
     const sf_halton_axis *axis = &table->axis;
-    uint64_t second = axis->scramble == SF_SCRAMBLE_OWEN ? 0 : at->second;
     for (size_t row = 0, n; row < rows; row += n) {
-        n = rows - row < RUN ? rows - row : RUN;
-        if (n > axis->block - at->offset) n = axis->block - at->offset;
+        n = rows - row < axis->block - at->offset ? rows - row : axis->block - at->offset;
         const uint64_t *parts = parts_of(table, kernels, at, n, scratch);
+        uint64_t second = axis->scramble == SF_SCRAMBLE_OWEN ? 0 : at->second;
+        size_t made = table->first_parts ? (n + SF_HALTON_ROOM - 1) / SF_HALTON_ROOM * SF_HALTON_ROOM : n;
         if (low)
-            kernels->pairs(n, parts, second, axis->finer, column[0], column[1]);
+            kernels->pairs(made, parts, second, axis->finer, high + row, low + row);
         else
-            kernels->words(n, parts, second, axis->fine, column[0]);
-        for (size_t i = 0; i < n; ++i) high[(row + i) * dims] = column[0][i];
-        for (size_t i = 0; low && i < n; ++i) low[(row + i) * dims] = column[1][i];
+            kernels->words(made, parts, second, axis->fine, high + row);
         at->offset += (uint32_t)n;
-        if (at->offset < axis->block) continue;
-        next_block(table, at);
-        if (axis->scramble != SF_SCRAMBLE_OWEN) second = at->second;
+        if (at->offset == axis->block) next_block(table, at);
     }
 }
 
 static void make(sf_points_cursor *cursor, uint32_t axes, uint64_t first, size_t rows, uint32_t *high, uint32_t *low) {
+    SF_ALIGNED(uint32_t) columns[2][SF_HALTON_WIDTH * SF_HALTON_COLUMN];
     const sf_halton_tables *tables = cursor->set->halton;
     const sf_halton_kernels *kernels = sf_halton_kernels_at(sf_isa_active());
     axis_cursor *at = (axis_cursor *)(void *)cursor->state;
-    uint32_t dims = cursor->set->options.dims;
-    for (uint32_t d = 0; d < axes; ++d) {
-        if (cursor->next != first) start(tables + d, first, at + d);
-        fill_axis(tables + d, kernels, at + d, rows, dims, high + d, low ? low + d : NULL);
+    size_t dims = cursor->set->options.dims;
+    for (uint32_t d = 0; cursor->next != first && d < axes; ++d) start(tables + d, first, at + d);
+    for (size_t row = 0, n; row < rows; row += n) {
+        n = rows - row < RUN ? rows - row : RUN;
+        for (uint32_t d = 0, width; d < axes; d += width) {
+            width = axes - d < SF_HALTON_WIDTH ? axes - d : SF_HALTON_WIDTH;
+            for (uint32_t k = 0; k < width; ++k)
+                fill_column(tables + d + k, kernels, at + d + k, n, columns[0] + k * SF_HALTON_COLUMN,
+                            low ? columns[1] + k * SF_HALTON_COLUMN : NULL);
+            kernels->weave(n, columns[0], width, high + row * dims + d, dims);
+            if (low) kernels->weave(n, columns[1], width, low + row * dims + d, dims);
+        }
     }
     cursor->next = first + rows;
 }

@@ -3,6 +3,8 @@
 
 #include "halton_kernels.h"
 
+#include <string.h>
+
 #include "platform.h"
 
 enum { RUN = 256 };
@@ -93,4 +95,29 @@ static void owen(size_t count, const sf_owen_node *nodes, const sf_owen_base *ba
     }
 }
 
-const sf_halton_kernels SF_AT_LEVEL(sf_halton_kernels) = {words, pairs, owen};
+/* ---- from columns to rows ---- */
+
+/* Four columns of a run as rows of four words: the compiler interleaves vectors. */
+static void weave_4(size_t rows, const uint32_t *SF_RESTRICT columns, uint32_t *SF_RESTRICT woven) {
+    enum { C = SF_HALTON_COLUMN };
+    for (size_t i = 0; i < rows; ++i) {
+        woven[4 * i] = columns[i];
+        woven[4 * i + 1] = columns[i + C];
+        woven[4 * i + 2] = columns[i + 2 * C];
+        woven[4 * i + 3] = columns[i + 3 * C];
+    }
+}
+
+static void weave(size_t rows, const uint32_t *columns, uint32_t width, uint32_t *out, size_t dims) {
+    SF_ALIGNED(uint32_t) woven[4 * SF_HALTON_COLUMN];
+    uint32_t k = 0;
+    size_t whole = (rows + SF_HALTON_ROOM - 1) / SF_HALTON_ROOM * SF_HALTON_ROOM;
+    for (; k + 4 <= width; k += 4) {
+        weave_4(whole, columns + k * SF_HALTON_COLUMN, woven);
+        for (size_t i = 0; i < rows; ++i) memcpy(out + i * dims + k, woven + 4 * i, 4 * sizeof *woven);
+    }
+    for (; k < width; ++k)
+        for (size_t i = 0; i < rows; ++i) out[i * dims + k] = columns[k * SF_HALTON_COLUMN + i];
+}
+
+const sf_halton_kernels SF_AT_LEVEL(sf_halton_kernels) = {words, pairs, owen, weave};

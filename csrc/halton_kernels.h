@@ -94,6 +94,14 @@ static inline uint64_t sf_owen_fraction(const sf_owen_node *node, const sf_owen_
     return border + tail * (width >> 32) + (tail * (width & 0xffffffffu) >> 32);
 }
 
+/* Coordinates are made by dimension, a run of rows of some dimensions, and then woven into rows. What is made may overrun its count up to a whole vector: columns leave room for that. */
+enum {
+    SF_HALTON_RUN = 256,
+    SF_HALTON_ROOM = 16,
+    SF_HALTON_COLUMN = SF_HALTON_RUN + SF_HALTON_ROOM,
+    SF_HALTON_WIDTH = 16 /* dimensions side by side */
+};
+
 typedef struct sf_halton_kernels {
     /* Words of first parts and the second part that they share. */
     void (*words)(size_t count, const uint64_t *first_parts, uint64_t second, uint32_t fine, uint32_t *high);
@@ -104,6 +112,9 @@ typedef struct sf_halton_kernels {
      * on, to fractions. */
     void (*owen)(size_t count, const sf_owen_node *nodes, const sf_owen_base *base, size_t digits,
                  const sf_owen_digit *digit, uint32_t skipped_power, uint64_t *fractions);
+    /* out[row * dims + k] = columns[k * SF_HALTON_COLUMN + row] for k below `width`, at most
+     * SF_HALTON_WIDTH, and rows below `rows`, at most SF_HALTON_RUN. */
+    void (*weave)(size_t rows, const uint32_t *columns, uint32_t width, uint32_t *out, size_t dims);
 } sf_halton_kernels;
 
 SF_KERNELS(sf_halton_kernels)
