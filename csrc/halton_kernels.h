@@ -94,7 +94,8 @@ static inline uint64_t sf_owen_fraction(const sf_owen_node *node, const sf_owen_
     return border + tail * (width >> 32) + (tail * (width & 0xffffffffu) >> 32);
 }
 
-/* Coordinates are made by dimension, a run of rows of some dimensions, and then woven into rows. What is made may overrun its count up to a whole vector: columns leave room for that. */
+/* Coordinates are made by dimension, a run of rows of some dimensions, and then woven into rows.
+ * What is made may overrun its count up to a whole vector: columns leave room for that. */
 enum {
     SF_HALTON_RUN = 256,
     SF_HALTON_ROOM = 16,

@@ -34,6 +34,25 @@ static void permute_5(const sf_permutation_shape *shape, size_t words, const uin
     }
 }
 
+/* sf_permute of five rounds where the count is 2^(row_bits + column_bits): no image is past the
+ * last, and what is taken modulo the rows or the count are low bits. */
+static void permute_binary(const sf_permutation_shape *shape, uint32_t row_bits, size_t words,
+                           const uint32_t *SF_RESTRICT keys, size_t stride, uint32_t *SF_RESTRICT cells) {
+    sf_permutation_shape s = *shape;
+    const uint32_t *SF_RESTRICT k2 = keys + 2 * stride, *SF_RESTRICT k4 = keys + 4 * stride,
+                   *SF_RESTRICT k6 = keys + 6 * stride, *SF_RESTRICT k8 = keys + 8 * stride;
+    uint32_t columns = (UINT32_C(1) << s.column_bits) - 1, rows = s.rows - 1, drop = 32 - row_bits;
+    for (size_t i = 0; i < words; ++i) {
+        uint32_t row = cells[i] >> s.column_bits, column = cells[i] & columns;
+        row = (row + ((column * keys[i] + keys[i + stride]) >> drop)) & rows;
+        column = sf_permutation_move_column(&s, row, column, k2[i], k2[i + stride]);
+        row = (row + ((column * k4[i] + k4[i + stride]) >> drop)) & rows;
+        column = sf_permutation_move_column(&s, row, column, k6[i], k6[i + stride]);
+        row = (row + ((column * k8[i] + k8[i + stride]) >> drop)) & rows;
+        cells[i] = ((row << s.column_bits | column) + k8[i + 2 * stride]) & s.last;
+    }
+}
+
 static void permute_once(const run *r, size_t at, size_t words, uint32_t *cells) {
     const sf_latin_tables *t = r->tables;
     const uint32_t *keys = t->keys + r->at + at;
@@ -92,10 +111,14 @@ static void fill_run(run *r, uint32_t *high, uint32_t *low) {
     const sf_latin_tables *t = r->tables;
     const uint32_t *rows = t->rows + r->at, *keys = t->places + r->at;
     for (size_t i = 0; i < r->words; ++i) r->cells[i] = r->numbers[i] = r->first + rows[i];
-    permute_once(r, 0, r->words, r->cells);
-    walk(r);
-    rotate(r->words, &t->shape, t->keys + (size_t)t->shape.rounds * 2 * t->period + r->at, r->cells);
     int binary = (t->count & (t->count - 1)) == 0;
+    if (binary && t->shape.rounds == SF_PERMUTATION_ROUNDS) {
+        permute_binary(&t->shape, t->count_bits - t->shape.column_bits, r->words, t->keys + r->at, t->period, r->cells);
+    } else {
+        permute_once(r, 0, r->words, r->cells);
+        walk(r);
+        rotate(r->words, &t->shape, t->keys + (size_t)t->shape.rounds * 2 * t->period + r->at, r->cells);
+    }
     if (t->count > SF_FLOAT_STRATA || (t->count > SF_FLOAT_STRATA / 2 && !binary)) {
         place_finely(r, keys, high, low);
         return;
