@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-/* What a prepared set of 21,201 dimensions costs: to make, and for a point anywhere in it.
+/* What a prepared set of 21,201 dimensions costs, to make, and for a point anywhere in it; and what two
+ * threads gain on a prepared set of 16, where a call has nothing to do but fill.
  *
  *     cc -std=c99 -O2 -I csrc/include bench/point_set.c build/csrc/libsunfleck_core.a -lm -pthread -o build/point_set
  */
-#define _POSIX_C_SOURCE 199309L /* clock_gettime */
+#define _POSIX_C_SOURCE 200112L /* clock_gettime, posix_memalign */
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
@@ -28,6 +29,36 @@ static int ascending(const void *a, const void *b) {
 static void report(const char *what, double *times, int count) {
     qsort(times, (size_t)count, sizeof *times, ascending);
     printf("%-42s %.4f (%.4f ... %.4f, %d runs) ms\n", what, times[count / 2], times[0], times[count - 1], count);
+}
+
+/* Fills of `count` points by one thread and by two, in turns; three of each count for nothing, so
+ * that each core finds its part in its cache. */
+static void compare_threads(sf_crew *crew, sf_scramble scramble, size_t count) {
+    static double times[2][RUNS];
+    sf_points_options options = sf_points_options_default();
+    options.dims = 16;
+    options.scramble = scramble;
+    options.crew = crew;
+    float *out = NULL;
+    if (posix_memalign((void **)&out, 64, count * 16 * sizeof *out)) exit(1);
+    sf_point_set *sets[2];
+    for (unsigned i = 0; i < 2; ++i) {
+        options.threads = i + 1;
+        if (sf_point_set_create(&options, sets + i, NULL) != SF_STATUS_OK) exit(1);
+    }
+    for (int run = 0; run < RUNS; ++run)
+        for (int i = 0; i < 2; ++i)
+            for (int again = 0; again < 4; ++again) {
+                double start = milliseconds();
+                if (sf_point_set_fill_f32(sets[i], 0, count, out, NULL) != SF_STATUS_OK) exit(1);
+                times[i][run] = milliseconds() - start;
+            }
+    for (int i = 0; i < 2; ++i) qsort(times[i], RUNS, sizeof **times, ascending);
+    double one = 1e3 * times[0][RUNS / 2], two = 1e3 * times[1][RUNS / 2];
+    printf("%-5s %5.2f MiB: one thread %7.1f us, two %7.1f us, gain %.2f\n",
+           scramble == SF_SCRAMBLE_OWEN ? "owen" : "plain", (double)count / 16384, one, two, one / two);
+    for (int i = 0; i < 2; ++i) sf_point_set_destroy(sets[i]);
+    free(out);
 }
 
 int main(void) {
@@ -53,5 +84,12 @@ int main(void) {
         report(worst ? "the point whose index needs most columns" : "a point of random index", times, RUNS);
     }
     sf_point_set_destroy(set);
+    sf_crew *crew = NULL;
+    if (sf_crew_create(&crew, NULL) != SF_STATUS_OK) return 1;
+    for (size_t count = 8192; count <= 131072; count *= 2) {
+        compare_threads(crew, SF_SCRAMBLE_NONE, count);
+        compare_threads(crew, SF_SCRAMBLE_OWEN, count);
+    }
+    sf_crew_destroy(crew);
     return 0;
 }

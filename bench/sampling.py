@@ -6,7 +6,7 @@
 What is compared takes turns, so that both see the same machine; a ratio is the median of the
 turns' ratios. One thread unless said.
 
-    python bench/sampling.py [memory] [cache] [scipy] [threads] [table]     # all without a name
+    python bench/sampling.py [memory] [cache] [patterns] [scipy] [threads] [table]     # all without a name
 """
 
 from __future__ import annotations
@@ -87,6 +87,24 @@ def bench_cache() -> None:
         print(f"{name:30} float32 {per_value(a, n * d)}, float64 {per_value(b, n * d)}")
 
 
+def bench_patterns() -> None:
+    """Every pattern with its own scramble and the others, 2^18 x 16 or the nearest count below."""
+    d = 16
+    for pattern in sf.PATTERNS:
+        n, _ = sf.valid_counts(pattern, 2**18, d)
+        float32, float64 = np.empty((n, d), np.float32), np.empty((n, d), np.float64)
+        scrambles = [None, *(s for s in sf.SCRAMBLES if s not in ("default", "none"))]
+        for scramble in scrambles:
+            works = [filler(pattern, n, d, out, scramble=scramble) for out in (float32, float64)]
+            try:
+                works[0]()
+            except ValueError:  # a scramble that the pattern does not take
+                continue
+            a, b = take_turns(works, 5)
+            name = f"{pattern} {scramble or 'none'}"
+            print(f"{name:20} n={n}: float32 {per_value(a, n * d)}, float64 {per_value(b, n * d)}")
+
+
 def bench_scipy() -> None:
     """2^18 x 16 values, SciPy's in float64 (it has no other), ours in both."""
     n, d = 2**18, 16
@@ -143,6 +161,7 @@ def bench_table() -> None:
 BENCHES = {
     "memory": bench_memory,
     "cache": bench_cache,
+    "patterns": bench_patterns,
     "scipy": bench_scipy,
     "threads": bench_threads,
     "table": bench_table,
