@@ -25,7 +25,7 @@ help:
 	@echo "make demo      renders pictures to a stated tolerance into out/"
 	@echo "make test      builds everything, runs the C and the Python tests"
 	@echo "make sanitize  runs the C tests under AddressSanitizer with UBSan, then ThreadSanitizer"
-	@echo "make lint      ruff, mypy --strict, warnings as errors, clang-format where there is one"
+	@echo "make lint      ruff, mypy --strict, warnings as errors, clang-format"
 	@echo "make bench     measures speed and accuracy; figures go to standard output"
 	@echo "make battery   runs dieharder over every generator; writes the table of docs/generators.md"
 	@echo "make clean     removes build/, out/, dist/ and .venv/"

@@ -16,8 +16,8 @@ sf_status sf_check_weights(const char *who, const double *weights, size_t count,
     *largest = 0.0;
     for (size_t i = 0; i < count; ++i) {
         if (!(weights[i] >= 0.0 && weights[i] < (double)INFINITY))
-            return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s: weights[%zu] is %.17g; it must be finite and at least 0", who,
-                           i, weights[i]);
+            return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                           "%s: weights[%zu] is %.17g; it must be finite and at least 0", who, i, weights[i]);
         if (weights[i] > *largest) *largest = weights[i];
     }
     if (*largest > 0.0) return SF_STATUS_OK;

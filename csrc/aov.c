@@ -35,7 +35,8 @@ void sf_aov_list(uint32_t wanted, char text[SF_AOV_TEXT_SIZE]) {
     strcpy(text, "none");
     for (int k = 0; k < SF_AOV_COUNT; ++k)
         if (wanted >> k & 1u)
-            length += (size_t)snprintf(text + length, SF_AOV_TEXT_SIZE - length, "%s%s", length ? "," : "", forms[k].name);
+            length +=
+                (size_t)snprintf(text + length, SF_AOV_TEXT_SIZE - length, "%s%s", length ? "," : "", forms[k].name);
 }
 
 /* ---- memory ---- */
@@ -46,10 +47,10 @@ static size_t round_up(size_t bytes) { return (bytes + SF_ALIGNMENT - 1) / SF_AL
  * memory = NULL only measures. */
 static size_t place_arrays(sf_aov_film *aovs, const sf_film *film, uint32_t threads, char *memory) {
     size_t crop = (size_t)film->crop_width * film->crop_height, used = 0;
-#define PLACE(array, bytes)                        \
-    do {                                           \
+#define PLACE(array, bytes)                            \
+    do {                                               \
         if (memory) (array) = (void *)(memory + used); \
-        used += round_up(bytes);                   \
+        used += round_up(bytes);                       \
     } while (0)
     PLACE(aovs->sums, (size_t)film->width * film->height * aovs->sums_per_pixel * sizeof *aovs->sums);
     if (aovs->wanted & SF_AOVS_OF_HITS) PLACE(aovs->hits, (size_t)threads * SF_BLOCKS * sizeof *aovs->hits);

@@ -27,7 +27,8 @@ static void normal(const sf_batch *b, const sf_mesh_table *meshes, sf_hit_sums *
         for (uint32_t l = 0; l < SF_LANES; ++l) {
             uint32_t i = first + l;
             double x = (double)b->hit_normal[0][i], y = (double)b->hit_normal[1][i], z = (double)b->hit_normal[2][i];
-            double along = (double)b->direction[0][i] * x + (double)b->direction[1][i] * y + (double)b->direction[2][i] * z;
+            double along =
+                (double)b->direction[0][i] * x + (double)b->direction[1][i] * y + (double)b->direction[2][i] * z;
             double square = x * x + y * y + z * z, inverse = 1 / sqrt(square);
             double scale = along > 0 ? -inverse : inverse;
             /* NaN and infinity fail the comparison as 0 does. */
@@ -48,7 +49,8 @@ static void depth(const sf_batch *b, const sf_mesh_table *meshes, const float fo
         SF_ROLLED
         for (uint32_t l = 0; l < SF_LANES; ++l) {
             uint32_t i = first + l;
-            double along = (double)b->direction[0][i] * x + (double)b->direction[1][i] * y + (double)b->direction[2][i] * z;
+            double along =
+                (double)b->direction[0][i] * x + (double)b->direction[1][i] * y + (double)b->direction[2][i] * z;
             bool hit = (b->mesh[i] != meshes->miss) & (b->distance[i] < INFINITY);
             value[l] = hit ? (double)b->distance[i] * along : 0;
             hits[l] = hit ? 1 : 0;

@@ -26,11 +26,12 @@ sf_camera_frame sf_camera_frame_of(const sf_camera *camera, uint32_t width, uint
     cross(forward, up, right);
     normalize(right);
     cross(right, forward, up);
-    sf_camera_frame frame = {.half_width = 0.5f * (float)width,
-                             .half_height = 0.5f * (float)height,
-                             .pixel = (float)(2 * tan((double)camera->vertical_fov * 3.14159265358979323846 / 360) / height),
-                             .aperture_radius = camera->aperture_radius,
-                             .focus_distance = camera->focus_distance > 0 ? camera->focus_distance : (float)distance};
+    sf_camera_frame frame = {
+        .half_width = 0.5f * (float)width,
+        .half_height = 0.5f * (float)height,
+        .pixel = (float)(2 * tan((double)camera->vertical_fov * 3.14159265358979323846 / 360) / height),
+        .aperture_radius = camera->aperture_radius,
+        .focus_distance = camera->focus_distance > 0 ? camera->focus_distance : (float)distance};
     for (int c = 0; c < 3; ++c) {
         frame.position[c] = camera->position[c];
         frame.forward[c] = (float)forward[c];

@@ -48,7 +48,8 @@ static const char *name_stop(int value) { return sf_stop_rule_name((sf_stop_rule
 static const char *name_seeds(int value) { return sf_seed_policy_name((sf_seed_policy)value); }
 
 #define OPTION(field, type, width, rule) {"option." #field, offsetof(sf_render_options, field), type, width, rule, NULL}
-#define OPTION_NAME(field, name_of) {"option." #field, offsetof(sf_render_options, field), SF_ARRAY_TEXT, 1, EQUAL, name_of}
+#define OPTION_NAME(field, name_of) \
+    {"option." #field, offsetof(sf_render_options, field), SF_ARRAY_TEXT, 1, EQUAL, name_of}
 
 static const option_field option_fields[] = {
     OPTION(width, SF_ARRAY_U32, 1, EQUAL),
@@ -84,10 +85,12 @@ typedef struct column {
 
 #define STATE(field, type) {"state." #field, offsetof(sf_round_state, field), type, 1}
 static const column state_columns[] = {
-    STATE(from, SF_ARRAY_U32),         STATE(to, SF_ARRAY_U32),        STATE(rounds, SF_ARRAY_U32),
-    STATE(look, SF_ARRAY_U32),         STATE(in_lap, SF_ARRAY_U32),    STATE(target, SF_ARRAY_F64),
-    STATE(level_fixed, SF_ARRAY_U32),  STATE(level, SF_ARRAY_F64),     STATE(tolerance, SF_ARRAY_F64),
-    STATE(seconds, SF_ARRAY_F64),      STATE(traced_samples, SF_ARRAY_U64),
+    STATE(from, SF_ARRAY_U32),           STATE(to, SF_ARRAY_U32),
+    STATE(rounds, SF_ARRAY_U32),         STATE(look, SF_ARRAY_U32),
+    STATE(in_lap, SF_ARRAY_U32),         STATE(target, SF_ARRAY_F64),
+    STATE(level_fixed, SF_ARRAY_U32),    STATE(level, SF_ARRAY_F64),
+    STATE(tolerance, SF_ARRAY_F64),      STATE(seconds, SF_ARRAY_F64),
+    STATE(traced_samples, SF_ARRAY_U64),
 };
 
 #define PIXEL(name, field, type, width) {"pixel." name, offsetof(sf_film_pixel, field), type, width}
@@ -115,8 +118,8 @@ typedef struct array_list {
     size_t count;
 } array_list;
 
-static void list_array(array_list *list, const char *name, sf_array_type type, uint32_t width, uint64_t rows, void *data,
-                       size_t stride) {
+static void list_array(array_list *list, const char *name, sf_array_type type, uint32_t width, uint64_t rows,
+                       void *data, size_t stride) {
     list->arrays[list->count++] = (sf_array){name, type, width, rows, data, stride};
 }
 
@@ -124,9 +127,11 @@ static void list_text(array_list *list, const char *name, const char *text) {
     list_array(list, name, SF_ARRAY_TEXT, 1, strlen(text), (void *)text, 1); /* that is only read */
 }
 
-static void list_columns(array_list *list, const column *columns, size_t count, void *rows, uint64_t row_count, size_t stride) {
+static void list_columns(array_list *list, const column *columns, size_t count, void *rows, uint64_t row_count,
+                         size_t stride) {
     for (size_t i = 0; i < count; ++i)
-        list_array(list, columns[i].name, columns[i].type, columns[i].width, row_count, (char *)rows + columns[i].offset, stride);
+        list_array(list, columns[i].name, columns[i].type, columns[i].width, row_count,
+                   (char *)rows + columns[i].offset, stride);
 }
 
 static size_t option_size(const option_field *field) {
@@ -185,7 +190,8 @@ static sf_status take_text(const sf_container *file, const char *name, char text
 }
 
 /* The enumeration's value of that name. */
-static sf_status find_name(const sf_container *file, const option_field *field, sf_render_options *options, sf_error *error) {
+static sf_status find_name(const sf_container *file, const option_field *field, sf_render_options *options,
+                           sf_error *error) {
     char text[TEXT_SIZE];
     sf_status status = take_text(file, field->name, text, error);
     if (status) return status;
@@ -228,7 +234,8 @@ static sf_status take_progress(const sf_container *file, sf_checkpoint *c, sf_er
     sf_status status = SF_STATUS_OK;
     list_progress(&list, c);
     for (size_t i = 0; !status && i < list.count; ++i) status = sf_container_take(file, list.arrays + i, error);
-    bool sound = c->state.from <= c->state.to && c->state.to <= SF_MAX_SPP && !(c->state.in_lap && c->state.look <= c->state.from);
+    bool sound = c->state.from <= c->state.to && c->state.to <= SF_MAX_SPP &&
+                 !(c->state.in_lap && c->state.look <= c->state.from);
     for (size_t i = 0; i < c->cells; ++i) sound = sound && !(c->open[i] & ~layout[i]) && !(c->active[i] & ~layout[i]);
     for (size_t i = 0; i < (size_t)c->film->width * c->film->height; ++i)
         sound = sound && c->film->pixels[i].reason < SF_STOP_REASON_COUNT;
@@ -275,7 +282,8 @@ static void print_option(char text[TEXT_SIZE], const option_field *field, const 
     if (field->name_of)
         snprintf(text, TEXT_SIZE, "%s", field->name_of(enumeration_value(field, options)));
     else if (field->width == 4)
-        snprintf(text, TEXT_SIZE, "(%" PRIu32 ", %" PRIu32 ", %" PRIu32 ", %" PRIu32 ")", four[0], four[1], four[2], four[3]);
+        snprintf(text, TEXT_SIZE, "(%" PRIu32 ", %" PRIu32 ", %" PRIu32 ", %" PRIu32 ")", four[0], four[1], four[2],
+                 four[3]);
     else if (field->type == SF_ARRAY_U64)
         snprintf(text, TEXT_SIZE, "%" PRIu64, *(const uint64_t *)at);
     else
@@ -285,7 +293,8 @@ static void print_option(char text[TEXT_SIZE], const option_field *field, const 
 static bool has_tolerance(const sf_render_options *o) { return o->relative_tolerance > 0 || o->absolute_tolerance > 0; }
 
 /* Whether our tolerance is at most theirs; before the level is known no decision has used it. */
-static bool tolerance_allows(const sf_render_options *theirs, const sf_render_options *ours, const sf_round_state *state) {
+static bool tolerance_allows(const sf_render_options *theirs, const sf_render_options *ours,
+                             const sf_round_state *state) {
     if (has_tolerance(theirs) != has_tolerance(ours)) return false;
     double level = state->level;
     return !state->level_fixed || fmax(ours->absolute_tolerance, ours->relative_tolerance * level) <=
@@ -301,7 +310,8 @@ static bool count_allows(const option_field *field, const sf_render_options *the
 static void compare_option(differences *d, const option_field *field, const sf_render_options *theirs,
                            const sf_render_options *ours, const sf_round_state *state) {
     size_t size = field->name_of ? sizeof(int) : option_size(field);
-    if (field->rule == FREE || !memcmp((const char *)theirs + field->offset, (const char *)ours + field->offset, size)) return;
+    if (field->rule == FREE || !memcmp((const char *)theirs + field->offset, (const char *)ours + field->offset, size))
+        return;
     if (field->offset == offsetof(sf_render_options, samples) && count_allows(field, theirs, ours)) return;
     if ((field->rule == LARGER && count_allows(field, theirs, ours)) ||
         (field->rule == TOLERANCE && tolerance_allows(theirs, ours, state))) {
@@ -348,12 +358,14 @@ static sf_status match(const sf_container *file, const sf_film *film, const sf_r
     for (size_t i = 0; i < OPTION_COUNT; ++i) compare_option(&d, option_fields + i, &theirs, &film->options, state);
     *more = d.more;
     if (d.theirs[0])
-        return sf_fail(error, SF_STATUS_INVALID_VALUE, "checkpoint '%.100s' was made with %s; this render has %s%s", file->path,
-                       d.theirs, d.ours, d.limits ? " (counts may only grow, the tolerance only shrink)" : "");
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "checkpoint '%.100s' was made with %s; this render has %s%s",
+                       file->path, d.theirs, d.ours,
+                       d.limits ? " (counts may only grow, the tolerance only shrink)" : "");
     if (theirs.spp != film->options.spp && is_closed(theirs.pattern))
-        return sf_fail(error, SF_STATUS_INVALID_VALUE,
-                       "checkpoint '%s' has the %u samples of pattern %s, which places all at once: spp can't grow to %u",
-                       file->path, theirs.spp, sf_pattern_name(theirs.pattern), film->options.spp);
+        return sf_fail(
+            error, SF_STATUS_INVALID_VALUE,
+            "checkpoint '%s' has the %u samples of pattern %s, which places all at once: spp can't grow to %u",
+            file->path, theirs.spp, sf_pattern_name(theirs.pattern), film->options.spp);
     return SF_STATUS_OK;
 }
 
@@ -428,7 +440,8 @@ static sf_status load_film(const sf_container *file, sf_film **out, sf_error *er
     if (!status) status = take_text(file, "instruction_set", isa, error);
     if (!status) status = sf_film_create(&options, &c.film, error);
     if (status) return status;
-    c.cells = (size_t)((c.film->width + SF_CELL_SIZE - 1) / SF_CELL_SIZE) * ((c.film->height + SF_CELL_SIZE - 1) / SF_CELL_SIZE);
+    c.cells = (size_t)((c.film->width + SF_CELL_SIZE - 1) / SF_CELL_SIZE) *
+              ((c.film->height + SF_CELL_SIZE - 1) / SF_CELL_SIZE);
     c.active = malloc(c.cells * sizeof *c.active);
     c.open = malloc(c.cells * sizeof *c.open);
     c.film->isa = find_isa(isa);

@@ -17,8 +17,8 @@ typedef struct sf_round_state {
     uint32_t rounds;      /* finished */
     uint32_t level_fixed; /* 0 or 1 */
     double level, tolerance;
-    double target;        /* of a budget */
-    double seconds;       /* of all calls so far */
+    double target;  /* of a budget */
+    double seconds; /* of all calls so far */
     uint64_t traced_samples;
 } sf_round_state;
 

@@ -99,7 +99,9 @@ static void pad(writer *w) {
     while (w->used % 8) put(w, "", 1, 1);
 }
 
-static uint64_t array_bytes(const sf_array *array) { return array->rows * array->width * value_size((uint32_t)array->type); }
+static uint64_t array_bytes(const sf_array *array) {
+    return array->rows * array->width * value_size((uint32_t)array->type);
+}
 
 static void put_entries(writer *w, const sf_array *arrays, size_t count) {
     uint64_t offset = HEADER_SIZE + count * ENTRY_SIZE, size = offset + CHECKSUM_SIZE;
@@ -172,7 +174,9 @@ static sf_status read_whole(sf_container *c, sf_error *error) {
     return status;
 }
 
-static const unsigned char *entry_at(const sf_container *c, uint32_t i) { return c->bytes + HEADER_SIZE + (size_t)i * ENTRY_SIZE; }
+static const unsigned char *entry_at(const sf_container *c, uint32_t i) {
+    return c->bytes + HEADER_SIZE + (size_t)i * ENTRY_SIZE;
+}
 
 /* A right checksum proves that nothing changed, not that the writer was honest: no entry may point
  * outside the file. */
@@ -191,8 +195,8 @@ static sf_status check(sf_container *c, sf_error *error) {
     uint64_t size = load64(c->bytes + 16);
     if (version != SF_CONTAINER_VERSION)
         return sf_fail(error, SF_STATUS_IO,
-                       "checkpoint '%s' has version %u of the format, and this Sunfleck reads version %u", c->path, version,
-                       SF_CONTAINER_VERSION);
+                       "checkpoint '%s' has version %u of the format, and this Sunfleck reads version %u", c->path,
+                       version, SF_CONTAINER_VERSION);
     c->count = load32(c->bytes + 12);
     uint64_t least = HEADER_SIZE + (uint64_t)c->count * ENTRY_SIZE + CHECKSUM_SIZE;
     if (c->size < size || c->size < least)
@@ -202,7 +206,8 @@ static sf_status check(sf_container *c, sf_error *error) {
                  checksum(0, c->bytes, (size_t)size - CHECKSUM_SIZE) == load64(c->bytes + size - CHECKSUM_SIZE);
     for (uint32_t i = 0; sound && i < c->count; ++i) sound = entry_fits(c, entry_at(c, i));
     if (sound) return SF_STATUS_OK;
-    return sf_fail(error, SF_STATUS_IO, "checkpoint '%s' is damaged: its bytes have changed since it was written", c->path);
+    return sf_fail(error, SF_STATUS_IO, "checkpoint '%s' is damaged: its bytes have changed since it was written",
+                   c->path);
 }
 
 sf_status sf_container_open(sf_container *container, const char *path, sf_error *error) {
@@ -238,6 +243,7 @@ sf_status sf_container_take(const sf_container *c, const sf_array *array, sf_err
     size_t size = value_size((uint32_t)array->type), row_bytes = array->width * size;
     const unsigned char *from = c->bytes + load64(find_entry(c, array->name) + 56);
     unsigned char *to = array->data;
-    for (uint64_t i = 0; i < rows; ++i, from += row_bytes, to += array->stride) copy_values(to, from, array->width, size);
+    for (uint64_t i = 0; i < rows; ++i, from += row_bytes, to += array->stride)
+        copy_values(to, from, array->width, size);
     return SF_STATUS_OK;
 }

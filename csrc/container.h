@@ -20,7 +20,14 @@
 
 #define SF_CONTAINER_VERSION 1u
 
-typedef enum sf_array_type { SF_ARRAY_TEXT = 0, SF_ARRAY_U8, SF_ARRAY_U32, SF_ARRAY_U64, SF_ARRAY_F32, SF_ARRAY_F64 } sf_array_type;
+typedef enum sf_array_type {
+    SF_ARRAY_TEXT = 0,
+    SF_ARRAY_U8,
+    SF_ARRAY_U32,
+    SF_ARRAY_U64,
+    SF_ARRAY_F32,
+    SF_ARRAY_F64
+} sf_array_type;
 
 /* `rows` rows of `width` values in memory, `stride` bytes apart: a column of structs as well as an
  * array. The same description writes an array and reads it back. */
@@ -54,6 +61,7 @@ void sf_container_close(sf_container *container);
 sf_status sf_container_take(const sf_container *container, const sf_array *array, sf_error *error);
 
 /* Whether the file has an array of that name, type and width, and how many rows. */
-bool sf_container_find(const sf_container *container, const char *name, sf_array_type type, uint32_t width, uint64_t *rows);
+bool sf_container_find(const sf_container *container, const char *name, sf_array_type type, uint32_t width,
+                       uint64_t *rows);
 
 #endif

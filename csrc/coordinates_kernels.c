@@ -31,7 +31,8 @@ static uint32_t shuffle_block(uint32_t base, uint32_t set, uint64_t key, uint32_
 
 static void sobol_block(const uint32_t table[4][256], uint32_t high, const uint32_t low[SF_LANES], uint32_t seed,
                         float *SF_RESTRICT out) {
-    uint32_t start = table[0][high & 0xf0u] ^ table[1][high >> 8 & 255u] ^ table[2][high >> 16 & 255u] ^ table[3][high >> 24];
+    uint32_t start =
+        table[0][high & 0xf0u] ^ table[1][high >> 8 & 255u] ^ table[2][high >> 16 & 255u] ^ table[3][high >> 24];
     uint32_t column0 = table[0][1], column1 = table[0][2], column2 = table[0][4], column3 = table[0][8];
     for (int l = 0; l < SF_LANES; ++l) {
         uint32_t x = start ^ ((0u - (low[l] & 1u)) & column0) ^ ((0u - (low[l] >> 1 & 1u)) & column1) ^
@@ -70,8 +71,7 @@ static void fill_random(const sf_coordinate_source *source, const sf_block *bloc
     for (uint32_t b = 0; b < block_count; ++b)
         for (uint32_t d = 0; d < source->count; ++d) {
             uint64_t key = dimension_key(set_key(blocks + b, 0), source->first + d);
-            for (uint32_t l = 0; l < SF_LANES; ++l)
-                out[d][SF_LANES * b + l] = random_float(blocks[b].base + l, key);
+            for (uint32_t l = 0; l < SF_LANES; ++l) out[d][SF_LANES * b + l] = random_float(blocks[b].base + l, key);
         }
 }
 

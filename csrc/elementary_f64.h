@@ -15,9 +15,11 @@ SF_INLINE double sf_unit_clamp_f64(double x) {
 
 SF_INLINE void sf_sincos_2pi_octant_f64(double r, double *sine, double *cosine) {
     double t = r * r;
-    double p = 0x1.50783485cbd83p+5 + t * (-0x1.e3074b4ff3058p+3 + t * (0x1.e8eed12ee00a3p+1 + t * -0x1.6c5b875d4e714p-1));
+    double p =
+        0x1.50783485cbd83p+5 + t * (-0x1.e3074b4ff3058p+3 + t * (0x1.e8eed12ee00a3p+1 + t * -0x1.6c5b875d4e714p-1));
     p = -0x1.4abbce625be53p+5 + t * (0x1.466bc6775aad9p+6 + t * (-0x1.32d2cce62ac22p+6 + t * p));
-    double q = -0x1.a6d1f2a086c90p+4 + t * (0x1.f9d3870871194p+2 + t * (-0x1.b6de8b8e9ba08p+0 + t * 0x1.1e745e5e09f53p-2));
+    double q =
+        -0x1.a6d1f2a086c90p+4 + t * (0x1.f9d3870871194p+2 + t * (-0x1.b6de8b8e9ba08p+0 + t * 0x1.1e745e5e09f53p-2));
     q = 0x1.03c1f081b5ac4p+6 + t * (-0x1.55d3c7e3cbff7p+6 + t * (0x1.e1f506891ae95p+5 + t * q));
     *sine = r * 6.0 + r * (0x1.21fb54442d184p-2 + t * p);
     *cosine = 1.0 + t * (-0x1.3bd3cc9be45dep+4 + t * q);
@@ -37,8 +39,11 @@ SF_INLINE double sf_atan_turns_f64(double low, double high) {
     int diagonal = low > 0.41421356237309503 * high;
     double numerator = diagonal ? high - low : low, denominator = diagonal ? high + low : high;
     double z = numerator / (denominator > 0.0 ? denominator : 1.0), t = z * z;
-    double p = 0x1.327cee478717dp-7 + t * (-0x1.1017bc898b707p-7 + t * (0x1.d550a08ec1b02p-8 + t * (-0x1.5c3f6574c0dcbp-8 + t * 0x1.3b48da01aa9f4p-9)));
-    p = 0x1.21bb94470a00bp-6 + t * (-0x1.da1ba95cf1637p-7 + t * (0x1.912ac13fdc0f6p-7 + t * (-0x1.5ba7bc2d8c76cp-7 + t * p)));
+    double p = 0x1.327cee478717dp-7 +
+               t * (-0x1.1017bc898b707p-7 +
+                    t * (0x1.d550a08ec1b02p-8 + t * (-0x1.5c3f6574c0dcbp-8 + t * 0x1.3b48da01aa9f4p-9)));
+    p = 0x1.21bb94470a00bp-6 +
+        t * (-0x1.da1ba95cf1637p-7 + t * (0x1.912ac13fdc0f6p-7 + t * (-0x1.5ba7bc2d8c76cp-7 + t * p)));
     p = -0x1.b2995e7b7b601p-5 + t * (0x1.04c26be3b0422p-5 + t * (-0x1.7483758e3eae1p-6 + t * p));
     double a = z * 0.125 + (z * 0.03125 + z * (0x1.7cc1b727220a9p-9 + t * p));
     return diagonal ? 0.125 - a : a;
@@ -64,7 +69,8 @@ SF_INLINE double sf_log_with_f64(double x, double rest) {
     memcpy(&f, &bits, 8);
     f -= 1.0;
     double s = f / (2.0 + f), t = s * s;
-    double p = 0x1.c71c62c42db89p-3 + t * (0x1.7462be245eae4p-3 + t * (0x1.39fd25d62ab13p-3 + t * 0x1.2b6776a1bf15dp-3));
+    double p =
+        0x1.c71c62c42db89p-3 + t * (0x1.7462be245eae4p-3 + t * (0x1.39fd25d62ab13p-3 + t * 0x1.2b6776a1bf15dp-3));
     p = t * (0x1.5555555555558p-1 + t * (0x1.99999999951f5p-2 + t * (0x1.2492492e0b70cp-2 + t * p)));
     return e * 0x1.62e42fefap-1 + (f - (s * (f - p) - (e * 0x1.cf79abc9e3b3ap-40 + rest)));
 }

@@ -25,8 +25,8 @@ static inline void sf_embree_intersect16(RTCScene scene, const int *valid, struc
 #else
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = coherence == SF_COHERENT ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
-                                             : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    context.flags =
+        coherence == SF_COHERENT ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     rtcIntersect16(valid, scene, &context, rays);
 #endif
 }
@@ -42,8 +42,8 @@ static inline void sf_embree_occluded16(RTCScene scene, const int *valid, struct
 #else
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = coherence == SF_COHERENT ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
-                                             : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    context.flags =
+        coherence == SF_COHERENT ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     rtcOccluded16(valid, scene, &context, rays);
 #endif
 }

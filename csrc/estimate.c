@@ -102,8 +102,12 @@ static void add_scalars(sf_moments *m, sf_channel_moments total) {
     sf_moments_merge(m, &other);
 }
 
-void sf_moments_add_f32(sf_moments *m, size_t count, const float *x) { add_scalars(m, array_moments(count, 1, x, NULL)); }
-void sf_moments_add_f64(sf_moments *m, size_t count, const double *x) { add_scalars(m, array_moments(count, 1, NULL, x)); }
+void sf_moments_add_f32(sf_moments *m, size_t count, const float *x) {
+    add_scalars(m, array_moments(count, 1, x, NULL));
+}
+void sf_moments_add_f64(sf_moments *m, size_t count, const double *x) {
+    add_scalars(m, array_moments(count, 1, NULL, x));
+}
 
 /* The scalar sum of squares is the sum of the channels'. */
 static void add_vectors(sf_vector_moments *m, sf_channel_moments total) {

@@ -80,8 +80,8 @@ void sf_confidence_sequence_add(sf_confidence_sequence *c, double sample) {
     }
     double x = (sample - c->low) / (c->high - c->low);
     past before = {(double)c->count, c->sum, c->square};
-    double bet = c->target > 0.0 ? c->target / (c->high - c->low) / past_variance(&before)
-                                 : past_bet(&before, c->log_factor);
+    double bet =
+        c->target > 0.0 ? c->target / (c->high - c->low) / past_variance(&before) : past_bet(&before, c->log_factor);
     bet = fmin(bet, MAX_BET);
     double deviation = x - past_mean(&before);
     c->bets += bet;

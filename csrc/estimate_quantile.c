@@ -49,7 +49,10 @@ static double log_gamma_ratio(double a) {
     double product = 1.0;
     for (; a < 32.0; a += 1.0) product *= a / (a + 0.5);
     double h = 1.0 / a;
-    double series = 1.0 + h * (-1.0 / 8 + h * (1.0 / 128 + h * (5.0 / 1024 + h * (-21.0 / 32768 + h * (-399.0 / 262144 + h * (869.0 / 4194304))))));
+    double series =
+        1.0 +
+        h * (-1.0 / 8 +
+             h * (1.0 / 128 + h * (5.0 / 1024 + h * (-21.0 / 32768 + h * (-399.0 / 262144 + h * (869.0 / 4194304))))));
     return 0.5 * log(a) + log(series * product);
 }
 

@@ -36,7 +36,8 @@ const char *sf_seed_policy_name(sf_seed_policy policy) {
 }
 
 const char *sf_stop_reason_name(sf_stop_reason reason) {
-    static const char *const names[] = {"fixed", "met", "max samples", "out of time", "suspicious", "interrupted", "masked"};
+    static const char *const names[] = {"fixed",      "met",         "max samples", "out of time",
+                                        "suspicious", "interrupted", "masked"};
     return (unsigned)reason < SF_STOP_REASON_COUNT ? names[reason] : NULL;
 }
 
@@ -55,7 +56,8 @@ static sf_status allocate_arrays(sf_film *film, bool masked, sf_error *error) {
     size_t traced = (size_t)film->width * film->height, pixels = (size_t)film->crop_width * film->crop_height;
     size_t rows = film->crop_height * sizeof *film->rows;
     size_t pools = sf_stop_pool_count(film) * sizeof *film->decay;
-    film->memory_bytes = traced * sizeof *film->pixels + pools + rows + pixels * (6 * 4 + 1 + masked) + 9 * SF_ALIGNMENT;
+    film->memory_bytes =
+        traced * sizeof *film->pixels + pools + rows + pixels * (6 * 4 + 1 + masked) + 9 * SF_ALIGNMENT;
     film->memory = sf_pages_alloc(film->memory_bytes);
     if (!film->memory) return sf_fail_memory(error, "the film", film->memory_bytes);
     char *memory = film->memory;
@@ -92,7 +94,8 @@ sf_status sf_film_create(const sf_render_options *options, sf_film **out, sf_err
     film->options.mask = NULL;
     film->parts = malloc(sizeof *film->parts);
     film->part_count = 1;
-    sf_status status = film->parts ? allocate_arrays(film, options->mask != NULL, error) : sf_fail_memory(error, "a film", sizeof *film->parts);
+    sf_status status = film->parts ? allocate_arrays(film, options->mask != NULL, error)
+                                   : sf_fail_memory(error, "a film", sizeof *film->parts);
     if (!status && options->aovs) status = sf_aov_create(options, film, error);
     if (!status) sf_mask_apply(options, film);
     if (!status) {
@@ -295,7 +298,8 @@ static void describe(sf_film *film, const char *name, const char *format, ...) {
 static void describe_options(sf_film *film, const sf_render_options *o) {
     describe(film, "width", "%" PRIu32, o->width);
     describe(film, "height", "%" PRIu32, o->height);
-    describe(film, "crop", "%" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32, o->crop[0], o->crop[1], o->crop[2], o->crop[3]);
+    describe(film, "crop", "%" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32, o->crop[0], o->crop[1], o->crop[2],
+             o->crop[3]);
     describe(film, "spp", "%" PRIu32, o->spp);
     describe(film, "start", "%" PRIu32, o->start);
     describe(film, "relative_tolerance", "%.17g", o->relative_tolerance);
@@ -343,7 +347,8 @@ static void describe_parts(sf_film *film) {
 
 sf_status sf_film_describe(sf_film *film, sf_error *error) {
     film->attributes = malloc(MAX_ATTRIBUTES * sizeof *film->attributes);
-    if (!film->attributes) return sf_fail_memory(error, "the film's attributes", MAX_ATTRIBUTES * sizeof *film->attributes);
+    if (!film->attributes)
+        return sf_fail_memory(error, "the film's attributes", MAX_ATTRIBUTES * sizeof *film->attributes);
     describe(film, "version", "%s", sf_version());
     describe(film, "instruction_set", "%s", sf_isa_name(film->isa));
     describe(film, "scene_hash", "%016" PRIx64, film->scene_hash);

@@ -63,24 +63,24 @@ typedef struct sf_film_part {
 
 /* The cells that the crop touches, in pixels of the full frame, and what is kept of them. */
 struct sf_film {
-    uint32_t x0, y0, width, height;         /* of the traced region */
+    uint32_t x0, y0, width, height; /* of the traced region */
     uint32_t crop_x0, crop_y0, crop_width, crop_height;
-    void *memory;                           /* that the arrays below lie in */
+    void *memory; /* that the arrays below lie in */
     size_t memory_bytes;
-    sf_film_pixel *pixels;                  /* width * height */
-    float *decay;                           /* of variance, by pooling cell; see stopping.h */
-    sf_film_row *rows;                      /* crop_height */
-    float *color;                           /* of the crop, 3 * crop_width * crop_height */
+    sf_film_pixel *pixels; /* width * height */
+    float *decay;          /* of variance, by pooling cell; see stopping.h */
+    sf_film_row *rows;     /* crop_height */
+    float *color;          /* of the crop, 3 * crop_width * crop_height */
     float *alpha;
     float *half_width;
     uint32_t *samples;
     uint8_t *reason;
-    struct sf_aov_film *aovs;               /* NULL where none was asked for */
-    uint8_t *mask;                          /* of the crop: 1 where the pixel counts; NULL: all do */
-    uint64_t counted;                       /* pixels of the crop that do */
+    struct sf_aov_film *aovs; /* NULL where none was asked for */
+    uint8_t *mask;            /* of the crop: 1 where the pixel counts; NULL: all do */
+    uint64_t counted;         /* pixels of the crop that do */
     uint64_t mask_hash;
-    uint8_t untouched;                      /* the sf_stop_reason of pixels without a sample */
-    double factor;                          /* standard errors in a half-width */
+    uint8_t untouched; /* the sf_stop_reason of pixels without a sample */
+    double factor;     /* standard errors in a half-width */
     sf_attribute *attributes;
     size_t attribute_count;
     sf_film_summary summary;

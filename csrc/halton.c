@@ -139,9 +139,7 @@ static uint32_t word_at(uint64_t index, uint32_t dimension, sf_scramble scramble
     return sf_halton_word(fraction_of(&axis, index), axis.fine);
 }
 
-uint32_t sf_halton_bits(uint64_t index, uint32_t dimension) {
-    return word_at(index, dimension, SF_SCRAMBLE_NONE, 0);
-}
+uint32_t sf_halton_bits(uint64_t index, uint32_t dimension) { return word_at(index, dimension, SF_SCRAMBLE_NONE, 0); }
 
 float sf_halton_sample(uint64_t index, uint32_t dimension, uint64_t seed) {
     return sf_float_from_bits(word_at(index, dimension, SF_SCRAMBLE_PERMUTED, seed));

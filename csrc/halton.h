@@ -15,9 +15,9 @@
 
 /* One dimension, and the key of its permutations. */
 typedef struct sf_halton_axis {
-    uint32_t base, block; /* block = base^low_digits: at most 1024, or the base itself */
+    uint32_t base, block;        /* block = base^low_digits: at most 1024, or the base itself */
     unsigned low_digits, digits; /* digits: base^digits is at least 2^64 */
-    uint32_t fine, finer; /* the greatest powers of the base up to 2^24 and below 2^32 */
+    uint32_t fine, finer;        /* the greatest powers of the base up to 2^24 and below 2^32 */
     sf_scramble scramble;
     uint64_t key;
     sf_owen_base owen; /* with that scramble */

@@ -13,7 +13,7 @@
 #include "strata.h"
 
 enum {
-    MAX_TABLE = 8192, /* beyond, what belongs to the least digits is computed each time */
+    MAX_TABLE = 8192,   /* beyond, what belongs to the least digits is computed each time */
     RUN = SF_HALTON_RUN /* coordinates of a dimension at a time */
 };
 
@@ -126,8 +126,8 @@ static void next_block(const sf_halton_tables *table, axis_cursor *at) {
 }
 
 /* The coordinates of `count` points of a block as fractions, but for at->second. */
-static const uint64_t *parts_of(const sf_halton_tables *table, const sf_halton_kernels *kernels,
-                                const axis_cursor *at, size_t count, uint64_t *scratch) {
+static const uint64_t *parts_of(const sf_halton_tables *table, const sf_halton_kernels *kernels, const axis_cursor *at,
+                                size_t count, uint64_t *scratch) {
     const sf_halton_axis *axis = &table->axis;
     if (axis->scramble != SF_SCRAMBLE_OWEN) {
         if (table->first_parts) return table->first_parts + at->offset;

@@ -50,16 +50,16 @@ typedef struct sf_owen_node {
 
 /* What the nodes of a base share. */
 typedef struct sf_owen_base {
-    uint32_t base, inverse;       /* inverse = floor(2^32 / base) */
-    uint32_t cells;               /* the greatest power of the base below 2^32, */
-    unsigned places;              /* and its exponent */
-    uint64_t width;               /* floor(2^64 / cells) */
-    uint32_t width_fraction;      /* and the 32 bits that follow */
+    uint32_t base, inverse;  /* inverse = floor(2^32 / base) */
+    uint32_t cells;          /* the greatest power of the base below 2^32, */
+    unsigned places;         /* and its exponent */
+    uint64_t width;          /* floor(2^64 / cells) */
+    uint32_t width_fraction; /* and the 32 bits that follow */
 } sf_owen_base;
 
 /* A digit that is not zero, after `skipped` zeros; the same for all nodes of a loop. */
 typedef struct sf_owen_digit {
-    uint32_t power;  /* base^skipped, below 2^32 */
+    uint32_t power; /* base^skipped, below 2^32 */
     uint32_t digit, mixed;
     uint32_t place;
 } sf_owen_digit;

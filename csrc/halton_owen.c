@@ -45,8 +45,8 @@ uint64_t sf_halton_owen_fraction(const sf_halton_axis *axis, sf_owen_node node, 
     if (rest) {
         /* Deeper digits move the point inside its interval, of less than 2^-21: as many again
          * are scrambled, to less than 2^-42, and what then is left of the index picks a tail. */
-        sf_owen_node below = sf_halton_owen_descend(axis, (sf_owen_node){node.key, node.tail, 0}, places, 2 * places,
-                                                    rest);
+        sf_owen_node below =
+            sf_halton_owen_descend(axis, (sf_owen_node){node.key, node.tail, 0}, places, 2 * places, rest);
         if (rest >= axis->owen.cells) below.tail = sf_hash64(below.key, rest / axis->owen.cells);
         node.tail = sf_halton_divide((sf_halton_sum){below.tail, 0}, (uint32_t)below.prefix, axis->owen.cells).fraction;
     }

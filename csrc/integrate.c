@@ -12,17 +12,17 @@
 #include "platform.h"
 #include "sunfleck/estimate.h"
 
-#define BLOCK_ROWS 8192           /* a call of the function */
-#define BLOCK_VALUES (1u << 18)   /* coordinates of a block, 2 MB, where dims are many */
-#define HEAVY_SHARE 0.5           /* of the means' variance, by one sample of each: suspicious … */
-#define HEAVY_CONFIDENCE 0.999    /* … if the means follow those samples beyond this doubt */
-#define LOOK_SHARE 0.5            /* of the error probability, for each look: of replicates … */
-#define INDEPENDENT_SHARE 0.8     /* … and of independent samples */
-#define PROBES 8                  /* points by which it is told whether the seed moves a pattern */
-#define FEWEST_GROWTH 1.05        /* of random's samples between looks … */
-#define LOOKS_BEFORE_DOUBLING 64  /* … unless there are so many that they must double */
-#define MARGIN 1.02               /* above the count at which random should meet the tolerance */
-#define SHIFT_WORD 0x7368696674u  /* "shift": keys of the random shifts, apart from the patterns' */
+#define BLOCK_ROWS 8192          /* a call of the function */
+#define BLOCK_VALUES (1u << 18)  /* coordinates of a block, 2 MB, where dims are many */
+#define HEAVY_SHARE 0.5          /* of the means' variance, by one sample of each: suspicious … */
+#define HEAVY_CONFIDENCE 0.999   /* … if the means follow those samples beyond this doubt */
+#define LOOK_SHARE 0.5           /* of the error probability, for each look: of replicates … */
+#define INDEPENDENT_SHARE 0.8    /* … and of independent samples */
+#define PROBES 8                 /* points by which it is told whether the seed moves a pattern */
+#define FEWEST_GROWTH 1.05       /* of random's samples between looks … */
+#define LOOKS_BEFORE_DOUBLING 64 /* … unless there are so many that they must double */
+#define MARGIN 1.02              /* above the count at which random should meet the tolerance */
+#define SHIFT_WORD 0x7368696674u /* "shift": keys of the random shifts, apart from the patterns' */
 
 typedef struct replicate {
     uint64_t key;
@@ -37,10 +37,10 @@ typedef struct integration {
     void *user;
     sf_integral *result;
     sf_error *error;
-    int independent;     /* points: each sample is a replicate */
-    int grows;           /* later points go on after earlier ones */
-    uint64_t points;     /* of each replicate, at the last look */
-    size_t block_rows;   /* of each replicate in a block */
+    int independent;   /* points: each sample is a replicate */
+    int grows;         /* later points go on after earlier ones */
+    uint64_t points;   /* of each replicate, at the last look */
+    size_t block_rows; /* of each replicate in a block */
     double *coordinates, *values;
     replicate *replicate;
     sf_confidence_sequence sequence; /* of random, where the range is known */

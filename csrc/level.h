@@ -26,17 +26,17 @@
 #endif
 
 #ifdef SF_HAVE_LEVELS
-#define SF_KERNELS(T)                                                                                 \
-    extern const T T##_baseline, T##_avx2, T##_avx512;                                                \
-    static inline const T *T##_at(sf_isa isa) {                                                       \
-        return isa == SF_ISA_AVX512 ? &T##_avx512 : isa == SF_ISA_AVX2 ? &T##_avx2 : &T##_baseline;   \
+#define SF_KERNELS(T)                                                                               \
+    extern const T T##_baseline, T##_avx2, T##_avx512;                                              \
+    static inline const T *T##_at(sf_isa isa) {                                                     \
+        return isa == SF_ISA_AVX512 ? &T##_avx512 : isa == SF_ISA_AVX2 ? &T##_avx2 : &T##_baseline; \
     }
 #else
-#define SF_KERNELS(T)                                                                                 \
-    extern const T T##_baseline;                                                                      \
-    static inline const T *T##_at(sf_isa isa) {                                                       \
-        (void)isa;                                                                                    \
-        return &T##_baseline;                                                                         \
+#define SF_KERNELS(T)                           \
+    extern const T T##_baseline;                \
+    static inline const T *T##_at(sf_isa isa) { \
+        (void)isa;                              \
+        return &T##_baseline;                   \
     }
 #endif
 

@@ -207,9 +207,9 @@ static sf_status fill_lights(sf_scene *scene, const candidate *candidates, size_
     }
     sf_status status = SF_STATUS_OK;
     if (!(total <= 1e30)) /* beyond it the single-precision weights would overflow */
-        status = sf_fail(error, SF_STATUS_INVALID_VALUE,
-                         "area x emission of the lights is %g; it must be at most 1e30: scale the scene or its lights down",
-                         total);
+        status = sf_fail(
+            error, SF_STATUS_INVALID_VALUE,
+            "area x emission of the lights is %g; it must be at most 1e30: scale the scene or its lights down", total);
     if (!status) status = build_alias(lights, power, error);
     free(power);
     return status;

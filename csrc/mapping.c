@@ -25,8 +25,14 @@ typedef struct range {
 
 #define FINITE {-(double)INFINITY, (double)INFINITY, "finite", ANY}
 #define VERTEX(name) {name, 3, 0, 0.0, FINITE}
-#define ROUGHNESS(name) {name, 1, 0, 0.0, {1e-4, 10.0, "in [1e-4, 10]", ANY}}
-#define MU {"mu", 1, 1, 0.4, {1e-6, 1e6, "in [1e-6, 1e6]", ANY}}
+#define ROUGHNESS(name)                                       \
+    {                                                         \
+        name, 1, 0, 0.0, { 1e-4, 10.0, "in [1e-4, 10]", ANY } \
+    }
+#define MU                                                    \
+    {                                                         \
+        "mu", 1, 1, 0.4, { 1e-6, 1e6, "in [1e-6, 1e6]", ANY } \
+    }
 
 typedef struct parameter {
     const char *name;
@@ -121,7 +127,8 @@ sf_status sf_mapping_find(const char *name, sf_mapping *mapping, sf_error *error
         strncat(names, m ? ", " : "", sizeof names - strlen(names) - 1);
         strncat(names, entries[m].name, sizeof names - strlen(names) - 1);
     }
-    return sf_fail(error, SF_STATUS_INVALID_VALUE, "mapping is \"%.40s\"; it must be one of %s", name ? name : "", names);
+    return sf_fail(error, SF_STATUS_INVALID_VALUE, "mapping is \"%.40s\"; it must be one of %s", name ? name : "",
+                   names);
 }
 
 size_t sf_mapping_input_width(sf_mapping mapping) { return is_known(mapping) ? 2 : 0; }
@@ -194,8 +201,8 @@ static sf_status check(sf_mapping mapping, const values *v, const range *allowed
     const char *name = entries[mapping].name;
     int digits = v->is_double ? 17 : 9;
     if (allowed->kind == DIRECTION)
-        return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s: %s[%zu] is (%.*g, %.*g, %.*g); it must be %s", name, v->name,
-                       i / 3, digits, value_at(v, i / 3 * 3), digits, value_at(v, i / 3 * 3 + 1), digits,
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s: %s[%zu] is (%.*g, %.*g, %.*g); it must be %s", name,
+                       v->name, i / 3, digits, value_at(v, i / 3 * 3), digits, value_at(v, i / 3 * 3 + 1), digits,
                        value_at(v, i / 3 * 3 + 2), allowed->words);
     if (v->rows == 1 && v->width == 1)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s: %s is %.*g; it must be %s", name, v->name, digits,
@@ -220,8 +227,8 @@ static sf_status take_parameter(sf_mapping_job *job, size_t k, const void *data,
     if (!data && !p->has_default)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s: %s is missing; it has no default", name, p->name);
     if (data && stride != 0 && stride != p->components)
-        return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s: the stride of %s is %zu; it must be 0 or %zu", name, p->name,
-                       stride, p->components);
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s: the stride of %s is %zu; it must be 0 or %zu", name,
+                       p->name, stride, p->components);
     if (!data) {
         for (size_t i = 0; i < p->components; ++i)
             if (is_double)
@@ -255,10 +262,11 @@ static sf_status check_corners(const sf_mapping_job *job, int is_double, sf_erro
             ef += e * f;
         }
         if (ef * ef > 1e-6 * ee * ff)
-            return sf_fail(error, SF_STATUS_INVALID_VALUE,
-                           "spherical_rectangle: the cosine of the angle at a, between b and c, is %.3g (rectangle %zu); "
-                           "it must be 0 within 0.001",
-                           ef / sqrt(ee * ff), i);
+            return sf_fail(
+                error, SF_STATUS_INVALID_VALUE,
+                "spherical_rectangle: the cosine of the angle at a, between b and c, is %.3g (rectangle %zu); "
+                "it must be 0 within 0.001",
+                ef / sqrt(ee * ff), i);
     }
     return SF_STATUS_OK;
 }
@@ -278,57 +286,50 @@ static sf_status fill(sf_mapping mapping, sf_mapping_verb verb, size_t count, co
     for (size_t k = 0; k < job.parameter_count && status == SF_STATUS_OK; ++k)
         status = take_parameter(&job, k, parameters ? parameters[k] : NULL, strides ? strides[k] : 0, is_double,
                                 fallback[k], error);
-    if (status == SF_STATUS_OK && mapping == SF_MAPPING_SPHERICAL_RECTANGLE) status = check_corners(&job, is_double, error);
+    if (status == SF_STATUS_OK && mapping == SF_MAPPING_SPHERICAL_RECTANGLE)
+        status = check_corners(&job, is_double, error);
     if (status != SF_STATUS_OK || count == 0) return status;
     const sf_mapping_kernels *kernels = sf_mapping_kernels_at(sf_isa_active());
     (is_double ? kernels->run_f64 : kernels->run_f32)(&job);
     return SF_STATUS_OK;
 }
 
-sf_status sf_mapping_sample_fill_f32(sf_mapping mapping, size_t count, const float *u,
-                                     const float *const *parameters, const size_t *strides, float *x,
-                                     sf_error *error) {
+sf_status sf_mapping_sample_fill_f32(sf_mapping mapping, size_t count, const float *u, const float *const *parameters,
+                                     const size_t *strides, float *x, sf_error *error) {
     return fill(mapping, SF_MAPPING_SAMPLE, count, u, (const void *const *)parameters, strides, x, 0, error);
 }
 
-sf_status sf_mapping_sample_fill_f64(sf_mapping mapping, size_t count, const double *u,
-                                     const double *const *parameters, const size_t *strides, double *x,
-                                     sf_error *error) {
+sf_status sf_mapping_sample_fill_f64(sf_mapping mapping, size_t count, const double *u, const double *const *parameters,
+                                     const size_t *strides, double *x, sf_error *error) {
     return fill(mapping, SF_MAPPING_SAMPLE, count, u, (const void *const *)parameters, strides, x, 1, error);
 }
 
-sf_status sf_mapping_pdf_fill_f32(sf_mapping mapping, size_t count, const float *x,
-                                     const float *const *parameters, const size_t *strides, float *pdf,
-                                     sf_error *error) {
+sf_status sf_mapping_pdf_fill_f32(sf_mapping mapping, size_t count, const float *x, const float *const *parameters,
+                                  const size_t *strides, float *pdf, sf_error *error) {
     return fill(mapping, SF_MAPPING_PDF, count, x, (const void *const *)parameters, strides, pdf, 0, error);
 }
 
-sf_status sf_mapping_pdf_fill_f64(sf_mapping mapping, size_t count, const double *x,
-                                     const double *const *parameters, const size_t *strides, double *pdf,
-                                     sf_error *error) {
+sf_status sf_mapping_pdf_fill_f64(sf_mapping mapping, size_t count, const double *x, const double *const *parameters,
+                                  const size_t *strides, double *pdf, sf_error *error) {
     return fill(mapping, SF_MAPPING_PDF, count, x, (const void *const *)parameters, strides, pdf, 1, error);
 }
 
-sf_status sf_mapping_invert_fill_f32(sf_mapping mapping, size_t count, const float *x,
-                                     const float *const *parameters, const size_t *strides, float *u,
-                                     sf_error *error) {
+sf_status sf_mapping_invert_fill_f32(sf_mapping mapping, size_t count, const float *x, const float *const *parameters,
+                                     const size_t *strides, float *u, sf_error *error) {
     return fill(mapping, SF_MAPPING_INVERT, count, x, (const void *const *)parameters, strides, u, 0, error);
 }
 
-sf_status sf_mapping_invert_fill_f64(sf_mapping mapping, size_t count, const double *x,
-                                     const double *const *parameters, const size_t *strides, double *u,
-                                     sf_error *error) {
+sf_status sf_mapping_invert_fill_f64(sf_mapping mapping, size_t count, const double *x, const double *const *parameters,
+                                     const size_t *strides, double *u, sf_error *error) {
     return fill(mapping, SF_MAPPING_INVERT, count, x, (const void *const *)parameters, strides, u, 1, error);
 }
 
-sf_status sf_mapping_weight_fill_f32(sf_mapping mapping, size_t count, const float *x,
-                                     const float *const *parameters, const size_t *strides, float *weight,
-                                     sf_error *error) {
+sf_status sf_mapping_weight_fill_f32(sf_mapping mapping, size_t count, const float *x, const float *const *parameters,
+                                     const size_t *strides, float *weight, sf_error *error) {
     return fill(mapping, SF_MAPPING_WEIGHT, count, x, (const void *const *)parameters, strides, weight, 0, error);
 }
 
-sf_status sf_mapping_weight_fill_f64(sf_mapping mapping, size_t count, const double *x,
-                                     const double *const *parameters, const size_t *strides, double *weight,
-                                     sf_error *error) {
+sf_status sf_mapping_weight_fill_f64(sf_mapping mapping, size_t count, const double *x, const double *const *parameters,
+                                     const size_t *strides, double *weight, sf_error *error) {
     return fill(mapping, SF_MAPPING_WEIGHT, count, x, (const void *const *)parameters, strides, weight, 1, error);
 }

@@ -15,33 +15,33 @@ typedef struct FN(block) {
 #define V(k) ((const REAL[3]){P(k), P((k) + 1), P((k) + 2)})
 #define POINT(width) {b->in[0][i], b->in[1][i], (width) > 2 ? b->in[2][i] : 0}
 
-#define TRIPLE(name, width, weight, ...)                                                          \
-    static void FN(name##_sample)(FN(block) * b) {                                        \
-        EACH {                                                                            \
-            REAL x[3];                                                                    \
-            F(sf_##name##_sample)(b->in[0][i], b->in[1][i] __VA_ARGS__, x);               \
-            for (int k = 0; k < (width); ++k) b->out[k][i] = x[k];                        \
-        }                                                                                 \
-    }                                                                                     \
-    static void FN(name##_pdf)(FN(block) * b) {                                           \
-        EACH {                                                                            \
-            const REAL x[3] = POINT(width);                                               \
-            b->out[0][i] = F(sf_##name##_pdf)(x __VA_ARGS__);                             \
-        }                                                                                 \
-    }                                                                                     \
-    static void FN(name##_invert)(FN(block) * b) {                                        \
-        EACH {                                                                            \
-            const REAL x[3] = POINT(width);                                               \
-            REAL u[2];                                                                    \
-            F(sf_##name##_invert)(x __VA_ARGS__, u);                                      \
-            for (int k = 0; k < 2; ++k) b->out[k][i] = u[k];                              \
-        }                                                                                 \
-    }                                                                                     \
-    static void FN(name##_weight)(FN(block) * b) {                                        \
-        EACH {                                                                            \
-            const REAL x[3] = POINT(width);                                               \
-            b->out[0][i] = F(weight)(x);                                                  \
-        }                                                                                 \
+#define TRIPLE(name, width, weight, ...)                                    \
+    static void FN(name##_sample)(FN(block) * b) {                          \
+        EACH {                                                              \
+            REAL x[3];                                                      \
+            F(sf_##name##_sample)(b->in[0][i], b->in[1][i] __VA_ARGS__, x); \
+            for (int k = 0; k < (width); ++k) b->out[k][i] = x[k];          \
+        }                                                                   \
+    }                                                                       \
+    static void FN(name##_pdf)(FN(block) * b) {                             \
+        EACH {                                                              \
+            const REAL x[3] = POINT(width);                                 \
+            b->out[0][i] = F(sf_##name##_pdf)(x __VA_ARGS__);               \
+        }                                                                   \
+    }                                                                       \
+    static void FN(name##_invert)(FN(block) * b) {                          \
+        EACH {                                                              \
+            const REAL x[3] = POINT(width);                                 \
+            REAL u[2];                                                      \
+            F(sf_##name##_invert)(x __VA_ARGS__, u);                        \
+            for (int k = 0; k < 2; ++k) b->out[k][i] = u[k];                \
+        }                                                                   \
+    }                                                                       \
+    static void FN(name##_weight)(FN(block) * b) {                          \
+        EACH {                                                              \
+            const REAL x[3] = POINT(width);                                 \
+            b->out[0][i] = F(weight)(x);                                    \
+        }                                                                   \
     }
 MAPPINGS(TRIPLE)
 
@@ -51,9 +51,7 @@ static void (*const FN(functions)[SF_MAPPING_COUNT][SF_MAPPING_VERB_COUNT])(FN(b
 /* Rows of `width` values into columns. */
 static void FN(take_apart)(size_t width, const REAL *rows, REAL (*columns)[BLOCK]) {
     switch (width) {
-        case 1:
-            EACH columns[0][i] = rows[i];
-            break;
+        case 1: EACH columns[0][i] = rows[i]; break;
         case 2:
             EACH {
                 columns[0][i] = rows[2 * i];
@@ -71,9 +69,7 @@ static void FN(take_apart)(size_t width, const REAL *rows, REAL (*columns)[BLOCK
 
 static void FN(put_together)(size_t width, REAL (*columns)[BLOCK], REAL *rows) {
     switch (width) {
-        case 1:
-            EACH rows[i] = columns[0][i];
-            break;
+        case 1: EACH rows[i] = columns[0][i]; break;
         case 2:
             EACH {
                 rows[2 * i] = columns[0][i];
@@ -106,8 +102,7 @@ static void FN(run)(const sf_mapping_job *job) {
     memset(&b, 0, sizeof b);
     for (size_t k = 0; k < job->parameter_count; ++k) {
         row[k + 1] = row[k] + job->components[k];
-        if (job->strides[k] == 0)
-            FN(gather)(job->components[k], 0, job->parameters[k], 0, 1, b.parameter + row[k]);
+        if (job->strides[k] == 0) FN(gather)(job->components[k], 0, job->parameters[k], 0, 1, b.parameter + row[k]);
     }
     for (size_t first = 0; first < job->count; first += BLOCK) {
         size_t n = job->count - first < BLOCK ? job->count - first : BLOCK;

@@ -116,11 +116,10 @@ SF_INLINE double sf_blackman_harris_sample_f64(double s, double radius) {
     return 0.5 + copysign((1.0 - 2.0 * p) * radius, s - 0.5);
 }
 
-SF_INLINE double sf_blackman_harris_place_f64(double x, double radius) {
-    return 0.5 - 0.5 * (fabs(x - 0.5) / radius);
-}
+SF_INLINE double sf_blackman_harris_place_f64(double x, double radius) { return 0.5 - 0.5 * (fabs(x - 0.5) / radius); }
 SF_INLINE double sf_blackman_harris_pdf_f64(double x, double radius) {
-    double p = sf_blackman_harris_place_f64(x, radius), integral, density = sf_blackman_harris_f64(p > 0.0 ? p : 0.0, &integral);
+    double p = sf_blackman_harris_place_f64(x, radius), integral,
+          density = sf_blackman_harris_f64(p > 0.0 ? p : 0.0, &integral);
     return p >= -0x1p-22 - 0x1p-24 / radius ? density * (0.5 / 0.35875) / radius : 0.0;
 }
 SF_INLINE double sf_blackman_harris_invert_f64(double x, double radius) {
@@ -293,9 +292,7 @@ SF_INLINE void sf_cross3_f64(const double a[3], const double b[3], double out[3]
     out[1] = a[2] * b[0] - a[0] * b[2];
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
-SF_INLINE double sf_dot3_f64(const double a[3], const double b[3]) {
-    return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
-}
+SF_INLINE double sf_dot3_f64(const double a[3], const double b[3]) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; }
 
 SF_INLINE void sf_triangle_point_f64(double alpha, double beta, const double a[3], const double b[3], const double c[3],
                                  double out[3]) {
@@ -330,8 +327,7 @@ SF_INLINE double sf_triangle_pdf_f64(const double x[3], const double a[3], const
     return 2.0 / sqrt(sf_dot3_f64(n, n));
 }
 
-SF_INLINE void sf_triangle_invert_f64(const double x[3], const double a[3], const double b[3], const double c[3],
-                                  double u[2]) {
+SF_INLINE void sf_triangle_invert_f64(const double x[3], const double a[3], const double b[3], const double c[3], double u[2]) {
     double alpha, beta;
     sf_triangle_coordinates_f64(x, a, b, c, &alpha, &beta);
     double root = 1.0 - beta;
@@ -339,18 +335,17 @@ SF_INLINE void sf_triangle_invert_f64(const double x[3], const double a[3], cons
     u[1] = sf_unit_clamp_f64(alpha / (root > 0.0 ? root : 1.0));
 }
 
-SF_INLINE void sf_triangle_low_distortion_sample_f64(double s, double t, const double a[3], const double b[3],
-                                                 const double c[3], double out[3]) {
+SF_INLINE void sf_triangle_low_distortion_sample_f64(double s, double t, const double a[3], const double b[3], const double c[3],
+                                                 double out[3]) {
     SF_ASSERT_UNIT(s, t);
     double alpha = t > s ? 0.5 * s : s - 0.5 * t, beta = t > s ? t - 0.5 * s : 0.5 * t;
     sf_triangle_point_f64(alpha, beta, a, b, c, out);
 }
-SF_INLINE double sf_triangle_low_distortion_pdf_f64(const double x[3], const double a[3], const double b[3],
-                                               const double c[3]) {
+SF_INLINE double sf_triangle_low_distortion_pdf_f64(const double x[3], const double a[3], const double b[3], const double c[3]) {
     return sf_triangle_pdf_f64(x, a, b, c);
 }
-SF_INLINE void sf_triangle_low_distortion_invert_f64(const double x[3], const double a[3], const double b[3],
-                                                 const double c[3], double u[2]) {
+SF_INLINE void sf_triangle_low_distortion_invert_f64(const double x[3], const double a[3], const double b[3], const double c[3],
+                                                 double u[2]) {
     double alpha, beta;
     sf_triangle_coordinates_f64(x, a, b, c, &alpha, &beta);
     u[0] = sf_unit_clamp_f64(beta > alpha ? 2.0 * alpha : alpha + beta);
@@ -523,9 +518,7 @@ SF_INLINE void sf_cosine_hemisphere_sample_f64(double s, double t, double w[3]) 
     SF_ASSERT_UNIT(s, t);
     sf_direction_f64(s, sqrt(1.0 - t), sqrt(t), w);
 }
-SF_INLINE double sf_cosine_hemisphere_pdf_f64(const double w[3]) {
-    return w[2] > 0.0 ? w[2] * (1.0 / SF_PI) : 0.0;
-}
+SF_INLINE double sf_cosine_hemisphere_pdf_f64(const double w[3]) { return w[2] > 0.0 ? w[2] * (1.0 / SF_PI) : 0.0; }
 SF_INLINE void sf_cosine_hemisphere_invert_f64(const double w[3], double u[2]) {
     u[0] = sf_angle_2pi_f64(w[1], w[0]);
     u[1] = sf_unit_clamp_f64(w[2] > 0.0 ? w[2] * w[2] : 0.0);
@@ -537,9 +530,7 @@ SF_INLINE void sf_cosine_hemisphere_concentric_sample_f64(double s, double t, do
     w[2] = sqrt(rest * (2.0 - rest));
 }
 SF_INLINE double sf_cosine_hemisphere_concentric_pdf_f64(const double w[3]) { return sf_cosine_hemisphere_pdf_f64(w); }
-SF_INLINE void sf_cosine_hemisphere_concentric_invert_f64(const double w[3], double u[2]) {
-    sf_disk_concentric_invert_f64(w, u);
-}
+SF_INLINE void sf_cosine_hemisphere_concentric_invert_f64(const double w[3], double u[2]) { sf_disk_concentric_invert_f64(w, u); }
 
 SF_INLINE double sf_cone_height_f64(double angle) {
     double sine, cosine;
@@ -590,8 +581,7 @@ SF_INLINE void sf_frame_from_normal_f64(const double n[3], double tangent[3], do
 
 SF_INLINE void sf_frame_to_world_f64(const double tangent[3], const double bitangent[3], const double normal[3],
                                  const double local[3], double world[3]) {
-    for (int k = 0; k < 3; ++k)
-        world[k] = (local[0] * tangent[k] + local[1] * bitangent[k]) + local[2] * normal[k];
+    for (int k = 0; k < 3; ++k) world[k] = (local[0] * tangent[k] + local[1] * bitangent[k]) + local[2] * normal[k];
 }
 
 /* ---- mapping_lobe.h ---- */
@@ -763,10 +753,12 @@ SF_INLINE double sf_sine_of_lesser_f64(double a, double b) {
 SF_INLINE void sf_spherical_triangle_draw_f64(const sf_spherical_triangle_f64 *triangle, double s, double t, double w[3]) {
     const double *a = triangle->a, *b = triangle->b, *tangent = triangle->tangent;
     double sum[3], gap[3], cut = s * triangle->share, left = (1.0 - s) * triangle->share;
-    double sine_cut = sf_sine_of_lesser_f64(cut, triangle->rest + left), sine_left = sf_sine_of_lesser_f64(left, triangle->rest + cut);
+    double sine_cut = sf_sine_of_lesser_f64(cut, triangle->rest + left),
+          sine_left = sf_sine_of_lesser_f64(left, triangle->rest + cut);
     double scale = sine_cut + sine_left, over = 1.0 / (scale > 0.0 ? scale : 1.0);
     double up = triangle->edge * sine_cut * over, along = triangle->across * (sine_left * over) + triangle->corner * up;
-    double rise = up * up * sf_dot3_f64(tangent, tangent), square = along * along + rise, inverse = 1.0 / (square > 0.0 ? square : 1.0);
+    double rise = up * up * sf_dot3_f64(tangent, tangent), square = along * along + rise,
+          inverse = 1.0 / (square > 0.0 ? square : 1.0);
     double turn_a = square > 0.0 ? (along * along - rise) * inverse : 1.0, turn_t = 2.0 * along * up * inverse;
     for (int k = 0; k < 3; ++k) {
         double d = turn_a * a[k] + turn_t * tangent[k];
@@ -840,7 +832,8 @@ SF_INLINE double sf_rectangle_share_f64(double x0, double x1, double width, doub
 SF_INLINE double sf_strip_share_f64(double x, double y0, double y1, double height, double near) {
     double q0 = y0 * y0 + near * near, q1 = y1 * y1 + near * near, ax = fabs(x);
     double far0 = sqrt(x * x + q0) + ax, far1 = sqrt(x * x + q1) + ax;
-    double g0 = x < 0.0 ? q0 / (far0 > 0.0 ? far0 : 1.0) : far0, g1 = x < 0.0 ? q1 / (far1 > 0.0 ? far1 : 1.0) : far1;
+    double g0 = x < 0.0 ? q0 / (far0 > 0.0 ? far0 : 1.0) : far0,
+          g1 = x < 0.0 ? q1 / (far1 > 0.0 ? far1 : 1.0) : far1;
     return sf_angle_2pi_f64(near * height, g0 * g1 + y0 * y1 + near * near);
 }
 SF_INLINE double sf_clamp_between_f64(double x, double low, double high) {
@@ -897,7 +890,8 @@ SF_INLINE double sf_spherical_rectangle_sweep_f64(const sf_spherical_rectangle_f
 SF_INLINE void sf_spherical_rectangle_draw_f64(const sf_spherical_rectangle_f64 *r, double s, double t, double w[3]) {
     double x = sf_spherical_rectangle_sweep_f64(r, s), square = x * x + r->near * r->near;
     double d0 = sqrt(square + r->y0 * r->y0), d1 = sqrt(square + r->y1 * r->y1);
-    double low0 = square / (d0 * (d0 + fabs(r->y0)) + 0x1p-120), low1 = square / (d1 * (d1 + fabs(r->y1)) + 0x1p-120);
+    double low0 = square / (d0 * (d0 + fabs(r->y0)) + 0x1p-120),
+          low1 = square / (d1 * (d1 + fabs(r->y1)) + 0x1p-120);
     double less0 = r->y0 > 0.0 ? low0 : 2.0 - low0, less1 = r->y1 > 0.0 ? low1 : 2.0 - low1;
     double more0 = r->y0 > 0.0 ? 2.0 - low0 : low0, more1 = r->y1 > 0.0 ? 2.0 - low1 : low1;
     double less = (1.0 - t) * less0 + t * less1, more = (1.0 - t) * more0 + t * more1;
@@ -907,15 +901,17 @@ SF_INLINE void sf_spherical_rectangle_draw_f64(const sf_spherical_rectangle_f64 
 }
 SF_INLINE void sf_spherical_rectangle_find_f64(const sf_spherical_rectangle_f64 *r, const double w[3], double u[2]) {
     double wx = sf_dot3_f64(w, r->x), wy = sf_dot3_f64(w, r->y), wz = sf_dot3_f64(w, r->z);
-    double x = sf_clamp_between_f64(r->near * wx / (wz > 0.0 ? wz : 0x1p-60), r->x0, r->x1), square = x * x + r->near * r->near;
-    double h0 = r->y0 / sqrt(square + r->y0 * r->y0 + 0x1p-100), h1 = r->y1 / sqrt(square + r->y1 * r->y1 + 0x1p-100);
+    double x = sf_clamp_between_f64(r->near * wx / (wz > 0.0 ? wz : 0x1p-60), r->x0, r->x1),
+          square = x * x + r->near * r->near;
+    double h0 = r->y0 / sqrt(square + r->y0 * r->y0 + 0x1p-100),
+          h1 = r->y1 / sqrt(square + r->y1 * r->y1 + 0x1p-100);
     double part = sf_rectangle_share_f64(r->x0, x, x - r->x0, r->y0, r->y1, r->y1 - r->y0, r->near);
     u[0] = sf_unit_clamp_f64(part / (r->share > 0.0 ? r->share : 1.0));
     u[1] = sf_unit_clamp_f64((wy - h0) / (h1 > h0 ? h1 - h0 : 1.0));
 }
 
-SF_INLINE void sf_spherical_rectangle_sample_f64(double s, double t, const double a[3], const double b[3],
-                                             const double c[3], const double origin[3], double w[3]) {
+SF_INLINE void sf_spherical_rectangle_sample_f64(double s, double t, const double a[3], const double b[3], const double c[3],
+                                             const double origin[3], double w[3]) {
     sf_spherical_rectangle_f64 rectangle;
     SF_ASSERT_UNIT(s, t);
     sf_spherical_rectangle_init_f64(&rectangle, a, b, c, origin);
@@ -928,8 +924,8 @@ SF_INLINE double sf_spherical_rectangle_pdf_f64(const double w[3], const double 
     sf_spherical_rectangle_init_f64(&rectangle, a, b, c, origin);
     return 0.25 / (SF_PI * rectangle.share);
 }
-SF_INLINE void sf_spherical_rectangle_invert_f64(const double w[3], const double a[3], const double b[3],
-                                             const double c[3], const double origin[3], double u[2]) {
+SF_INLINE void sf_spherical_rectangle_invert_f64(const double w[3], const double a[3], const double b[3], const double c[3],
+                                             const double origin[3], double u[2]) {
     sf_spherical_rectangle_f64 rectangle;
     sf_spherical_rectangle_init_f64(&rectangle, a, b, c, origin);
     sf_spherical_rectangle_find_f64(&rectangle, w, u);

@@ -16,31 +16,31 @@
  * a function) and, behind a comma each, the parameters of its functions: P is a scalar, V a
  * vector, from that row on. */
 #define ABC , V(0), V(3), V(6)
-#define MAPPINGS(X)                                                  \
-    X(pixel_box, 2, one, )                                           \
-    X(pixel_tent, 2, one, )                                          \
-    X(pixel_gaussian, 2, one, , P(0))                                \
-    X(pixel_gaussian_truncated, 2, one, , P(0), P(1))                \
-    X(pixel_blackman_harris, 2, one, , P(0))                         \
-    X(pixel_mitchell, 2, sf_pixel_mitchell_weight, )                 \
-    X(pixel_lanczos, 2, sf_pixel_lanczos_weight, )                   \
-    X(triangle, 3, one, ABC)                                         \
-    X(triangle_low_distortion, 3, one, ABC)                          \
-    X(parallelogram, 3, one, ABC)                                    \
-    X(disk_polar, 2, one, )                                          \
-    X(disk_concentric, 2, one, )                                     \
-    X(disk_naive, 2, one, )                                          \
-    X(annulus, 2, one, , P(0))                                       \
-    X(regular_polygon, 2, one, , P(0))                               \
-    X(sphere, 3, one, )                                              \
-    X(hemisphere, 3, one, )                                          \
-    X(cosine_hemisphere, 3, one, )                                   \
-    X(cosine_hemisphere_concentric, 3, one, )                        \
-    X(cone, 3, one, , P(0))                                          \
-    X(power_cosine, 3, one, , P(0))                                  \
-    X(henyey_greenstein, 3, one, , P(0))                             \
-    X(ggx_visible_normals, 3, one, , V(0), P(3), P(4))               \
-    X(spherical_triangle, 3, one, ABC, V(9))                         \
+#define MAPPINGS(X)                                    \
+    X(pixel_box, 2, one, )                             \
+    X(pixel_tent, 2, one, )                            \
+    X(pixel_gaussian, 2, one, , P(0))                  \
+    X(pixel_gaussian_truncated, 2, one, , P(0), P(1))  \
+    X(pixel_blackman_harris, 2, one, , P(0))           \
+    X(pixel_mitchell, 2, sf_pixel_mitchell_weight, )   \
+    X(pixel_lanczos, 2, sf_pixel_lanczos_weight, )     \
+    X(triangle, 3, one, ABC)                           \
+    X(triangle_low_distortion, 3, one, ABC)            \
+    X(parallelogram, 3, one, ABC)                      \
+    X(disk_polar, 2, one, )                            \
+    X(disk_concentric, 2, one, )                       \
+    X(disk_naive, 2, one, )                            \
+    X(annulus, 2, one, , P(0))                         \
+    X(regular_polygon, 2, one, , P(0))                 \
+    X(sphere, 3, one, )                                \
+    X(hemisphere, 3, one, )                            \
+    X(cosine_hemisphere, 3, one, )                     \
+    X(cosine_hemisphere_concentric, 3, one, )          \
+    X(cone, 3, one, , P(0))                            \
+    X(power_cosine, 3, one, , P(0))                    \
+    X(henyey_greenstein, 3, one, , P(0))               \
+    X(ggx_visible_normals, 3, one, , V(0), P(3), P(4)) \
+    X(spherical_triangle, 3, one, ABC, V(9))           \
     X(spherical_rectangle, 3, one, ABC, V(9))
 
 static inline float one(const float *x) {

@@ -17,8 +17,8 @@ static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
 /* ---- what may be merged ---- */
 
 static sf_status refuse(size_t i, const char *what, const char *a, const char *b, sf_error *error) {
-    return sf_fail(error, SF_STATUS_INVALID_VALUE, "film 1 has %s %s and film %zu has %s; they must be the same", what, a, i + 1,
-                   b);
+    return sf_fail(error, SF_STATUS_INVALID_VALUE, "film 1 has %s %s and film %zu has %s; they must be the same", what,
+                   a, i + 1, b);
 }
 
 static sf_status check_alike(const sf_film *a, const sf_film *b, size_t i, sf_error *error) {
@@ -29,14 +29,17 @@ static sf_status check_alike(const sf_film *a, const sf_film *b, size_t i, sf_er
                        a->scene_hash, i + 1, b->scene_hash);
     if (p->width != q->width || p->height != q->height)
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
-                       "film 1 is of a frame of %u x %u pixels and film %zu of %u x %u; they must be the same", p->width,
-                       p->height, i + 1, q->width, q->height);
+                       "film 1 is of a frame of %u x %u pixels and film %zu of %u x %u; they must be the same",
+                       p->width, p->height, i + 1, q->width, q->height);
     if (p->confidence != q->confidence)
-        return sf_fail(error, SF_STATUS_INVALID_VALUE, "film 1 has confidence %g and film %zu has %g; they must be the same",
-                       p->confidence, i + 1, q->confidence);
-    if (p->pattern != q->pattern) return refuse(i, "pattern", sf_pattern_name(p->pattern), sf_pattern_name(q->pattern), error);
+        return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                       "film 1 has confidence %g and film %zu has %g; they must be the same", p->confidence, i + 1,
+                       q->confidence);
+    if (p->pattern != q->pattern)
+        return refuse(i, "pattern", sf_pattern_name(p->pattern), sf_pattern_name(q->pattern), error);
     if (p->pixel_filter != q->pixel_filter)
-        return refuse(i, "pixel_filter", sf_pixel_filter_name(p->pixel_filter), sf_pixel_filter_name(q->pixel_filter), error);
+        return refuse(i, "pixel_filter", sf_pixel_filter_name(p->pixel_filter), sf_pixel_filter_name(q->pixel_filter),
+                      error);
     if (p->stop != q->stop) return refuse(i, "stop", sf_stop_rule_name(p->stop), sf_stop_rule_name(q->stop), error);
     return SF_STATUS_OK;
 }
@@ -48,10 +51,11 @@ static sf_status check_parts(const sf_film *a, size_t i, const sf_film *b, size_
             const uint32_t *m = a->parts[p].crop, *n = b->parts[q].crop;
             uint32_t x = larger(m[0], n[0]), y = larger(m[1], n[1]);
             if (a->parts[p].seed != b->parts[q].seed || x >= smaller(m[2], n[2]) || y >= smaller(m[3], n[3])) continue;
-            return sf_fail(error, SF_STATUS_INVALID_VALUE,
-                           "films %zu and %zu both have seed %" PRIu64
-                           " at pixel (%u, %u), so that their samples are not independent; give each replicate a seed of its own",
-                           i + 1, k + 1, a->parts[p].seed, x, y);
+            return sf_fail(
+                error, SF_STATUS_INVALID_VALUE,
+                "films %zu and %zu both have seed %" PRIu64
+                " at pixel (%u, %u), so that their samples are not independent; give each replicate a seed of its own",
+                i + 1, k + 1, a->parts[p].seed, x, y);
         }
     return SF_STATUS_OK;
 }
@@ -138,7 +142,8 @@ static void gather_summaries(sf_film *film, const sf_film *const *films, size_t 
     sf_film_summary *s = &film->summary;
     for (size_t i = 0; i < count; ++i) {
         const sf_film_summary *other = &films[i]->summary;
-        if (other->tolerance > 0 && !(s->tolerance > 0 && s->tolerance < other->tolerance)) s->tolerance = other->tolerance;
+        if (other->tolerance > 0 && !(s->tolerance > 0 && s->tolerance < other->tolerance))
+            s->tolerance = other->tolerance;
         s->traced_samples += other->traced_samples;
         s->seconds += other->seconds;
         s->threads = larger(s->threads, other->threads);
@@ -158,10 +163,11 @@ static sf_status merge_pixels(sf_film *film, const sf_film *const *films, size_t
             uint32_t frame_x = x + film->crop_x0, frame_y = y + film->crop_y0;
             if (!merge_pixel(films, count, frame_x, frame_y, pixel))
                 return sf_fail(error, SF_STATUS_INVALID_VALUE,
-                               "pixel (%u, %u) is in none of the films; their crops must fill a rectangle", frame_x, frame_y);
+                               "pixel (%u, %u) is in none of the films; their crops must fill a rectangle", frame_x,
+                               frame_y);
             if (pixel->moments.count + pixel->moments.nonfinite > UINT32_MAX)
-                return sf_fail(error, SF_STATUS_INVALID_VALUE, "pixel (%u, %u) would have more than %u samples", frame_x,
-                               frame_y, UINT32_MAX);
+                return sf_fail(error, SF_STATUS_INVALID_VALUE, "pixel (%u, %u) would have more than %u samples",
+                               frame_x, frame_y, UINT32_MAX);
             bool met = tolerance > 0 && (double)pixel->half_width <= tolerance;
             if (met && pixel->reason != SF_STOP_SUSPICIOUS) pixel->reason = SF_STOP_MET;
         }

@@ -259,8 +259,7 @@ sf_status sf_net_prepare(sf_point_set *set, sf_error *error) {
 
 /* ---- rows ---- */
 
-void sf_net_rows(sf_points_cursor *cursor, uint64_t first, size_t rows, sf_number_type type, int streams,
-                 void *out) {
+void sf_net_rows(sf_points_cursor *cursor, uint64_t first, size_t rows, sf_number_type type, int streams, void *out) {
     const sf_net_tables *t = cursor->set->net;
     if (cursor->next != first) cursor->net_kernels->start(t, first, cursor->state);
     cursor->net_kernels->rows(t, first, rows, cursor->state, type, streams, out);

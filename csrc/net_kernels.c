@@ -150,8 +150,8 @@ static void start(const sf_net_tables *t, uint64_t index, uint32_t *state) {
 
 /* ---- scrambles after the words ---- */
 
-static void owen_low(size_t count, const uint32_t *SF_RESTRICT high, const uint32_t *SF_RESTRICT keys,
-                     uint32_t period, uint32_t *SF_RESTRICT low) {
+static void owen_low(size_t count, const uint32_t *SF_RESTRICT high, const uint32_t *SF_RESTRICT keys, uint32_t period,
+                     uint32_t *SF_RESTRICT low) {
     for (size_t begin = 0; begin < count; begin += period) {
         size_t n = count - begin < period ? count - begin : period;
         for (size_t i = 0; i < n; ++i) low[begin + i] = sf_owen_low_word(high[begin + i], keys[i]);

@@ -132,8 +132,8 @@ static void invert_point(const sf_piecewise *p, const double *x, double *u, int 
     if (p->width == 2) u[1] = value_of(&rows, x[1], row);
 }
 
-static sf_status fill_f32(const sf_piecewise *p, point_function *function, const char *name, size_t count, const float *in,
-                          float *out, size_t out_width, sf_error *error) {
+static sf_status fill_f32(const sf_piecewise *p, point_function *function, const char *name, size_t count,
+                          const float *in, float *out, size_t out_width, sf_error *error) {
     sf_status status = sf_check_unit_f32("piecewise", name, in, count * p->width, error);
     for (size_t i = 0; !status && i < count; ++i) {
         double from[2] = {0.0, 0.0}, to[2] = {0.0, 0.0};
@@ -144,8 +144,8 @@ static sf_status fill_f32(const sf_piecewise *p, point_function *function, const
     return status;
 }
 
-static sf_status fill_f64(const sf_piecewise *p, point_function *function, const char *name, size_t count, const double *in,
-                          double *out, size_t out_width, sf_error *error) {
+static sf_status fill_f64(const sf_piecewise *p, point_function *function, const char *name, size_t count,
+                          const double *in, double *out, size_t out_width, sf_error *error) {
     sf_status status = sf_check_unit_f64("piecewise", name, in, count * p->width, error);
     for (size_t i = 0; !status && i < count; ++i) function(p, in + i * p->width, out + i * out_width, 1);
     return status;
@@ -159,7 +159,8 @@ static sf_status create(const double *weights, size_t columns, size_t rows, size
     double largest, *sums = NULL;
     *piecewise = NULL;
     if (columns < 1 || columns > most || rows < 1 || rows > most)
-        return sf_fail(error, SF_STATUS_INVALID_VALUE, "piecewise: %zu x %zu cells; each must be 1 .. 2^24", columns, rows);
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "piecewise: %zu x %zu cells; each must be 1 .. 2^24", columns,
+                       rows);
     sf_status status = sf_check_weights("piecewise", weights, columns * rows, &largest, error);
     if (status) return status;
     size_t size = rows * (columns + 1) + rows + 1;
@@ -212,13 +213,15 @@ size_t sf_piecewise_width(const sf_piecewise *piecewise) { return piecewise->wid
 sf_status sf_piecewise_sample_fill_f32(const sf_piecewise *p, size_t count, const float *u, float *x, sf_error *error) {
     return fill_f32(p, sample_point, "u", count, u, x, p->width, error);
 }
-sf_status sf_piecewise_sample_fill_f64(const sf_piecewise *p, size_t count, const double *u, double *x, sf_error *error) {
+sf_status sf_piecewise_sample_fill_f64(const sf_piecewise *p, size_t count, const double *u, double *x,
+                                       sf_error *error) {
     return fill_f64(p, sample_point, "u", count, u, x, p->width, error);
 }
 sf_status sf_piecewise_pdf_fill_f32(const sf_piecewise *p, size_t count, const float *x, float *pdf, sf_error *error) {
     return fill_f32(p, pdf_point, "x", count, x, pdf, 1, error);
 }
-sf_status sf_piecewise_pdf_fill_f64(const sf_piecewise *p, size_t count, const double *x, double *pdf, sf_error *error) {
+sf_status sf_piecewise_pdf_fill_f64(const sf_piecewise *p, size_t count, const double *x, double *pdf,
+                                    sf_error *error) {
     return fill_f64(p, pdf_point, "x", count, x, pdf, 1, error);
 }
 sf_status sf_piecewise_invert_fill_f32(const sf_piecewise *p, size_t count, const float *x, float *u, sf_error *error) {
@@ -226,6 +229,7 @@ sf_status sf_piecewise_invert_fill_f32(const sf_piecewise *p, size_t count, cons
     for (size_t i = 0; !status && i < count * p->width; ++i) u[i] = sf_unit_clamp(u[i]); /* rounded up to 1 */
     return status;
 }
-sf_status sf_piecewise_invert_fill_f64(const sf_piecewise *p, size_t count, const double *x, double *u, sf_error *error) {
+sf_status sf_piecewise_invert_fill_f64(const sf_piecewise *p, size_t count, const double *x, double *u,
+                                       sf_error *error) {
     return fill_f64(p, invert_point, "x", count, x, u, p->width, error);
 }

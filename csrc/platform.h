@@ -79,8 +79,7 @@ static inline void sf_stream_copy(void *to, const void *from, size_t bytes) {
     if (head > bytes) head = bytes;
     memcpy(out, in, head);
     for (out += head, in += head, bytes -= head; bytes >= 64; out += 64, in += 64, bytes -= 64)
-        for (int i = 0; i < 4; ++i)
-            _mm_stream_si128((__m128i *)out + i, _mm_loadu_si128((const __m128i *)in + i));
+        for (int i = 0; i < 4; ++i) _mm_stream_si128((__m128i *)out + i, _mm_loadu_si128((const __m128i *)in + i));
     memcpy(out, in, bytes);
 #else
     memcpy(to, from, bytes);
@@ -102,9 +101,7 @@ static inline size_t sf_atomic_fetch_add(sf_atomic_size *a, size_t step) {
 static inline void sf_atomic_store(sf_atomic_size *a, size_t value) {
     __atomic_store_n(&a->value, value, __ATOMIC_RELEASE);
 }
-static inline size_t sf_atomic_load(const sf_atomic_size *a) {
-    return __atomic_load_n(&a->value, __ATOMIC_ACQUIRE);
-}
+static inline size_t sf_atomic_load(const sf_atomic_size *a) { return __atomic_load_n(&a->value, __ATOMIC_ACQUIRE); }
 
 /* Lanes of 64 bits, as many as a register of this translation unit's instruction set has, with the
  * operators of their elements: for kernels whose values must stay in registers from round to

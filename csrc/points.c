@@ -16,7 +16,7 @@
 #define ANY_COUNT UINT64_MAX
 #define COUNT_24 (UINT64_C(1) << 24) /* strata that a float holds */
 #define COUNT_32 (UINT64_C(1) << 32)
-#define NET_SCRAMBLES                                                                                          \
+#define NET_SCRAMBLES                                                                                        \
     (TAKES(SF_SCRAMBLE_NONE) | TAKES(SF_SCRAMBLE_SHIFT) | TAKES(SF_SCRAMBLE_LMS) | TAKES(SF_SCRAMBLE_OWEN) | \
      TAKES(SF_SCRAMBLE_NESTED))
 #define DIGITS (TAKES(SF_SCRAMBLE_NONE) | TAKES(SF_SCRAMBLE_PERMUTED) | TAKES(SF_SCRAMBLE_OWEN))
@@ -24,8 +24,8 @@
 
 static const sf_pattern_method methods[SF_PATTERN_COUNT] = {
     [SF_PATTERN_UNIFORM] = {"uniform", "centres of a regular grid; aliases, and needs its total ahead",
-                            SF_POINTS_MAX_DIMS, COUNT_32, 1, SF_SCRAMBLE_NONE, TAKES(SF_SCRAMBLE_NONE),
-                            sf_grid_prepare, sf_uniform_make},
+                            SF_POINTS_MAX_DIMS, COUNT_32, 1, SF_SCRAMBLE_NONE, TAKES(SF_SCRAMBLE_NONE), sf_grid_prepare,
+                            sf_uniform_make},
     [SF_PATTERN_RANDOM] = {"random", "independent points: error falls as n^-1/2 whatever the integrand",
                            SF_POINTS_MAX_DIMS, ANY_COUNT, 0, SF_SCRAMBLE_NONE, TAKES(SF_SCRAMBLE_NONE), NULL,
                            sf_random_make},
@@ -34,8 +34,8 @@ static const sf_pattern_method methods[SF_PATTERN_COUNT] = {
                              sf_grid_prepare, sf_jittered_make},
     [SF_PATTERN_LATIN] = {"latin",
                           "latin hypercube: n strata in each dimension, one point in each; needs its total ahead",
-                          SF_POINTS_MAX_DIMS, COUNT_32, 1, SF_SCRAMBLE_NONE, TAKES(SF_SCRAMBLE_NONE),
-                          sf_latin_prepare, sf_latin_make},
+                          SF_POINTS_MAX_DIMS, COUNT_32, 1, SF_SCRAMBLE_NONE, TAKES(SF_SCRAMBLE_NONE), sf_latin_prepare,
+                          sf_latin_make},
     [SF_PATTERN_MULTIJITTERED] = {"multijittered",
                                   "jittered and latin at once, correlated (Kensler 2013), by pairs of dimensions; "
                                   "needs its total ahead",
@@ -47,8 +47,8 @@ static const sf_pattern_method methods[SF_PATTERN_COUNT] = {
                                SF_ORTHOGONAL_MAX_DIMS, COUNT_24, 1, SF_SCRAMBLE_NONE, TAKES(SF_SCRAMBLE_NONE),
                                sf_orthogonal_prepare, sf_orthogonal_make},
     [SF_PATTERN_HALTON] = {"halton", "radical inverses in the first d primes, digits permuted (Halton 1960)",
-                           SF_HALTON_MAX_DIMS, ANY_COUNT, 0, SF_SCRAMBLE_PERMUTED,
-                           DIGITS, sf_halton_prepare, sf_halton_make},
+                           SF_HALTON_MAX_DIMS, ANY_COUNT, 0, SF_SCRAMBLE_PERMUTED, DIGITS, sf_halton_prepare,
+                           sf_halton_make},
     [SF_PATTERN_HAMMERSLEY] = {"hammersley", "i / n, and Halton's radical inverses beside it; needs its total ahead",
                                SF_HALTON_MAX_DIMS + 1, COUNT_32, 1, SF_SCRAMBLE_NONE, DIGITS, sf_hammersley_prepare,
                                sf_hammersley_make},
@@ -69,8 +69,8 @@ static const struct {
     [SF_SCRAMBLE_DEFAULT] = {"default", "the pattern's own: owen for sobol, sz, permuted for halton, none elsewhere"},
     [SF_SCRAMBLE_NONE] = {"none", "the plain pattern"},
     [SF_SCRAMBLE_PERMUTED] = {"permuted", "each digit by a random permutation of its place"},
-    [SF_SCRAMBLE_SHIFT] = {"shift",
-                           "one random word a dimension: XORed into every point's (sobol, sz), added modulo 1 (lattice, r2)"},
+    [SF_SCRAMBLE_SHIFT] =
+        {"shift", "one random word a dimension: XORed into every point's (sobol, sz), added modulo 1 (lattice, r2)"},
     [SF_SCRAMBLE_LMS] = {"lms", "a random lower triangular matrix a dimension, and a digital shift (Matousek 1998)"},
     [SF_SCRAMBLE_OWEN] = {"owen", "nested uniform scrambling by a hash (Owen 1995, Burley 2020, Vegdahl 2021)"},
     [SF_SCRAMBLE_NESTED] = {"nested", "nested uniform scrambling with a flip of its own at each node (Owen 1995)"},
@@ -191,8 +191,8 @@ static sf_status check_scramble(sf_pattern pattern, sf_scramble scramble, sf_err
     char taken[128] = "";
     for (int s = SF_SCRAMBLE_NONE, length = 0; s < SF_SCRAMBLE_COUNT; ++s)
         if (sf_pattern_takes_scramble(pattern, (sf_scramble)s))
-            length += snprintf(taken + length, sizeof taken - (size_t)length, "%s%s", length ? ", " : "",
-                               scrambles[s].name);
+            length +=
+                snprintf(taken + length, sizeof taken - (size_t)length, "%s%s", length ? ", " : "", scrambles[s].name);
     return sf_fail(error, SF_STATUS_INVALID_VALUE, "scramble is %s; %s takes: %s", name ? name : "unknown",
                    methods[pattern].name, taken);
 }

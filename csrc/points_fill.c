@@ -163,7 +163,6 @@ sf_status sf_point_set_fill_f32(const sf_point_set *set, uint64_t first, size_t 
 sf_status sf_point_set_fill_f64(const sf_point_set *set, uint64_t first, size_t count, double *out, sf_error *error) {
     return fill(set, first, count, SF_NUMBER_F64, out, error);
 }
-sf_status sf_point_set_fill_u32(const sf_point_set *set, uint64_t first, size_t count, uint32_t *out,
-                                sf_error *error) {
+sf_status sf_point_set_fill_u32(const sf_point_set *set, uint64_t first, size_t count, uint32_t *out, sf_error *error) {
     return fill(set, first, count, SF_NUMBER_U32, out, error);
 }

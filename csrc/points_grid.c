@@ -138,8 +138,7 @@ sf_status sf_grid_sides(uint64_t n, uint32_t dims, uint32_t *sides, sf_error *er
     else
         snprintf(nearby, sizeof nearby, "%" PRIu64, best.below ? best.below : best.above);
     return sf_fail(error, SF_STATUS_INVALID_VALUE,
-                   "%" PRIu64 " points are no grid of %" PRIu32
-                   " dimensions: it takes a product of %" PRIu32
+                   "%" PRIu64 " points are no grid of %" PRIu32 " dimensions: it takes a product of %" PRIu32
                    " integers, the largest at most twice the smallest; the nearest: %s",
                    n, dims, dims, nearby);
 }

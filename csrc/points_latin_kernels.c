@@ -22,7 +22,7 @@ static void permute_5(const sf_permutation_shape *shape, size_t words, const uin
                       uint32_t *SF_RESTRICT cells) {
     sf_permutation_shape s = *shape;
     const uint32_t *SF_RESTRICT k2 = keys + 2 * stride, *SF_RESTRICT k4 = keys + 4 * stride,
-                   *SF_RESTRICT k6 = keys + 6 * stride, *SF_RESTRICT k8 = keys + 8 * stride;
+                                *SF_RESTRICT k6 = keys + 6 * stride, *SF_RESTRICT k8 = keys + 8 * stride;
     for (size_t i = 0; i < words; ++i) {
         uint32_t row = cells[i] >> s.column_bits, column = cells[i] & ((UINT32_C(1) << s.column_bits) - 1);
         row = sf_permutation_move_row(&s, row, column, keys[i], keys[i + stride]);
@@ -40,7 +40,7 @@ static void permute_binary(const sf_permutation_shape *shape, uint32_t row_bits,
                            const uint32_t *SF_RESTRICT keys, size_t stride, uint32_t *SF_RESTRICT cells) {
     sf_permutation_shape s = *shape;
     const uint32_t *SF_RESTRICT k2 = keys + 2 * stride, *SF_RESTRICT k4 = keys + 4 * stride,
-                   *SF_RESTRICT k6 = keys + 6 * stride, *SF_RESTRICT k8 = keys + 8 * stride;
+                                *SF_RESTRICT k6 = keys + 6 * stride, *SF_RESTRICT k8 = keys + 8 * stride;
     uint32_t columns = (UINT32_C(1) << s.column_bits) - 1, rows = s.rows - 1, drop = 32 - row_bits;
     for (size_t i = 0; i < words; ++i) {
         uint32_t row = cells[i] >> s.column_bits, column = cells[i] & columns;
@@ -82,8 +82,8 @@ static void hash(size_t words, const uint32_t *SF_RESTRICT keys, uint32_t *SF_RE
     for (size_t i = 0; i < words; ++i) numbers[i] = sf_stratum_hash(numbers[i], keys[i]);
 }
 
-static void place(size_t words, double inverse, const uint32_t *SF_RESTRICT random,
-                  const uint32_t *SF_RESTRICT cells, uint32_t *SF_RESTRICT high) {
+static void place(size_t words, double inverse, const uint32_t *SF_RESTRICT random, const uint32_t *SF_RESTRICT cells,
+                  uint32_t *SF_RESTRICT high) {
     for (size_t i = 0; i < words; ++i) high[i] = sf_stratum_word(random[i], cells[i], inverse);
 }
 

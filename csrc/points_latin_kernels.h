@@ -15,9 +15,9 @@ typedef struct sf_latin_tables {
     uint32_t count_bits; /* log2 of the count, rounded down */
     uint32_t period;     /* words; a multiple of dims */
     uint32_t period_rows;
-    uint32_t *rows;      /* [period]: the word's row, 0 .. period_rows - 1 */
-    uint32_t *keys;      /* [2 rounds + 1][period]: of the permutations, see sf_permutation_keys */
-    uint32_t *places;    /* [period]: keys of the places in the strata */
+    uint32_t *rows;   /* [period]: the word's row, 0 .. period_rows - 1 */
+    uint32_t *keys;   /* [2 rounds + 1][period]: of the permutations, see sf_permutation_keys */
+    uint32_t *places; /* [period]: keys of the places in the strata */
 } sf_latin_tables;
 
 typedef struct sf_latin_kernels {

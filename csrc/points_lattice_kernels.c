@@ -21,8 +21,8 @@ static void fill_row_both(uint64_t factor, const uint64_t *SF_RESTRICT begins, c
 }
 
 /* Short rows: one over the rows. */
-static void fill_column(const uint64_t *SF_RESTRICT factors, size_t rows, uint64_t begin, uint64_t step,
-                        uint32_t dims, uint32_t *SF_RESTRICT high) {
+static void fill_column(const uint64_t *SF_RESTRICT factors, size_t rows, uint64_t begin, uint64_t step, uint32_t dims,
+                        uint32_t *SF_RESTRICT high) {
     for (size_t r = 0; r < rows; ++r) high[r * dims] = (uint32_t)((begin + factors[r] * step) >> 32);
 }
 

@@ -32,8 +32,7 @@ typedef struct field {
 } field;
 
 /* Seroussi 1998, "Table of Low-Weight Binary Irreducible Polynomials". */
-static const uint16_t polynomials[13] = {0,     0,     0x7,   0xb,   0x13,  0x25,  0x43,
-                                         0x83,  0x11b, 0x203, 0x409, 0x805, 0x1009};
+static const uint16_t polynomials[13] = {0, 0, 0x7, 0xb, 0x13, 0x25, 0x43, 0x83, 0x11b, 0x203, 0x409, 0x805, 0x1009};
 
 static int is_prime(uint64_t n) {
     if (n < 4) return n > 1;
@@ -44,9 +43,7 @@ static int is_prime(uint64_t n) {
 }
 
 /* Whether there are orthogonal arrays of q levels here. */
-static int is_level_count(uint64_t q) {
-    return q >= 2 && q <= MAX_LEVELS && ((q & (q - 1)) == 0 || is_prime(q));
-}
+static int is_level_count(uint64_t q) { return q >= 2 && q <= MAX_LEVELS && ((q & (q - 1)) == 0 || is_prime(q)); }
 
 static field make_field(uint32_t size) {
     field f = {size, 0};
@@ -137,9 +134,9 @@ static uint32_t stratum_of(const field *f, uint32_t run, uint32_t dimension, uin
 /* One block of memory. */
 typedef struct orthogonal_tables {
     field levels;
-    sf_permutation_shape shape;                      /* of the runs */
+    sf_permutation_shape shape;              /* of the runs */
     uint32_t order[SF_PERMUTATION_MAX_KEYS]; /* keys of their order */
-    uint16_t images[];                               /* [dims][q]: the levels, permuted */
+    uint16_t images[];                       /* [dims][q]: the levels, permuted */
 } orthogonal_tables;
 
 sf_status sf_orthogonal_prepare(sf_point_set *set, sf_error *error) {

@@ -52,8 +52,10 @@ sf_status sf_pad_prepare(sf_point_set *set, sf_error *error) {
         t->nested = keys;
     for (uint32_t d = 0; d < o->pad && d < o->dims; ++d) sum_bytes(o, d, t->bytes[d]);
     for (uint32_t d = 0; d < o->dims; ++d) {
-        if (owen) t->keys[d] = sf_owen_seed(o->seed, d);
-        else t->nested[d] = sf_hash64(o->seed, d);
+        if (owen)
+            t->keys[d] = sf_owen_seed(o->seed, d);
+        else
+            t->nested[d] = sf_hash64(o->seed, d);
     }
     return SF_STATUS_OK;
 }
@@ -83,7 +85,7 @@ static void make_set(sf_points_cursor *cursor, uint32_t set, uint32_t first, siz
     uint32_t columns = dims - begin < t->pad ? dims - begin : t->pad;
     set_indices(cursor, set, first, rows, indices);
     for (uint32_t d = 0; d < columns; ++d) {
-        const uint32_t(*bytes)[256] = t->bytes[d];
+        const uint32_t (*bytes)[256] = t->bytes[d];
         uint32_t start = start_word(bytes, indices[0]);
         if (t->keys)
             cursor->net_kernels->look_up(rows, indices, bytes[0], start, t->keys[begin + d], words[d]);

@@ -72,7 +72,8 @@ static sf_status hire_workers(sf_rounds *r, sf_error *error) {
         uint64_t stream = r->options.seeds == SF_SEEDS_THREAD ? i : 0;
         sf_status status = sf_rng_init(&r->workers[i].stream, SF_RNG_XOSHIRO256PP, r->options.seed, stream, error);
         if (status) return status;
-        if (r->context.aovs & SF_AOVS_OF_HITS) r->workers[i].batch.hit_sums = r->film->aovs->hits + (size_t)i * SF_BLOCKS;
+        if (r->context.aovs & SF_AOVS_OF_HITS)
+            r->workers[i].batch.hit_sums = r->film->aovs->hits + (size_t)i * SF_BLOCKS;
     }
     return sf_pool_create(r->options.threads, &r->pool, error);
 }
@@ -88,8 +89,9 @@ static sf_status prepare(sf_rounds *r, sf_error *error) {
     if (status) return status;
     uint64_t traced = sf_rounds_count(r, r->open);
     if (o->samples && o->samples < traced)
-        return sf_fail(error, SF_STATUS_INVALID_VALUE, "samples is %" PRIu64 "; at least one for each of %" PRIu64 " pixels is allowed",
-                       o->samples, traced);
+        return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                       "samples is %" PRIu64 "; at least one for each of %" PRIu64 " pixels is allowed", o->samples,
+                       traced);
     r->context.camera = sf_camera_frame_of(&scene->camera, o->width, o->height);
     r->context.filter = o->pixel_filter;
     r->context.seeds = o->seeds;
@@ -204,7 +206,8 @@ sf_status sf_render(const sf_scene *scene, const sf_render_options *options, sf_
         sf_film_destroy(r->film);
     else
         *film = r->film;
-    if (!status && r->checkpoint_status) status = sf_fail(error, r->checkpoint_status, "%s", r->checkpoint_error.message);
+    if (!status && r->checkpoint_status)
+        status = sf_fail(error, r->checkpoint_status, "%s", r->checkpoint_error.message);
     free(r);
     return status;
 }

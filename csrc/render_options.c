@@ -40,8 +40,8 @@ static sf_status check_crop(sf_render_options *o, sf_error *error) {
     }
     if (c[0] < c[2] && c[2] <= o->width && c[1] < c[3] && c[3] <= o->height) return SF_STATUS_OK;
     return sf_fail(error, SF_STATUS_INVALID_VALUE,
-                   "crop is (%u, %u, %u, %u); (x0, y0, x1, y1) must have 0 <= x0 < x1 <= %u and 0 <= y0 < y1 <= %u", c[0],
-                   c[1], c[2], c[3], o->width, o->height);
+                   "crop is (%u, %u, %u, %u); (x0, y0, x1, y1) must have 0 <= x0 < x1 <= %u and 0 <= y0 < y1 <= %u",
+                   c[0], c[1], c[2], c[3], o->width, o->height);
 }
 
 static sf_status check_sizes(sf_render_options *o, sf_error *error) {
@@ -67,18 +67,20 @@ static sf_status check_budget(sf_render_options *o, sf_error *error) {
     if (!(o->confidence > 0 && o->confidence < 1))
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "confidence is %g; it must be in (0, 1)", o->confidence);
     if (!(o->seconds >= 0 && o->seconds <= 1e9))
-        return sf_fail(error, SF_STATUS_INVALID_VALUE, "seconds is %g; it must be in (0, 1e9], or 0 for no limit", o->seconds);
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "seconds is %g; it must be in (0, 1e9], or 0 for no limit",
+                       o->seconds);
     if (o->start && (!o->spp || o->start > SF_MAX_SPP - o->spp))
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
-                       "start is %u and spp is %u; a start goes with a fixed spp, and start + spp is at most %u", o->start,
-                       o->spp, SF_MAX_SPP);
+                       "start is %u and spp is %u; a start goes with a fixed spp, and start + spp is at most %u",
+                       o->start, o->spp, SF_MAX_SPP);
     bool tolerance = o->relative_tolerance > 0 || o->absolute_tolerance > 0;
     if (o->spp && tolerance)
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
                        "spp is %u and a tolerance is given too; give one: a fixed count, or an accuracy", o->spp);
     if (o->samples && (o->spp || tolerance))
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
-                       "samples is %" PRIu64 " beside spp or a tolerance; a budget of samples stands alone or with seconds",
+                       "samples is %" PRIu64
+                       " beside spp or a tolerance; a budget of samples stands alone or with seconds",
                        o->samples);
     if (!o->spp && !tolerance && !o->samples && !(o->seconds > 0)) o->relative_tolerance = 0.01;
     return SF_STATUS_OK;
@@ -106,10 +108,11 @@ static sf_status check_aovs(const sf_render_options *o, sf_error *error) {
                        SF_AOV_COUNT - 1);
     bool halves = o->aovs >> SF_AOV_HALF_A & 1u || o->aovs >> SF_AOV_HALF_B & 1u;
     if (halves && o->spp && o->start / SF_LANES == (o->start + o->spp - 1) / SF_LANES)
-        return sf_fail(error, SF_STATUS_INVALID_VALUE,
-                       "aovs half_a and half_b take blocks of %d samples in turn, and spp is %u, in one block; it must be "
-                       "at least %d",
-                       SF_LANES, o->spp, SF_LANES + 1);
+        return sf_fail(
+            error, SF_STATUS_INVALID_VALUE,
+            "aovs half_a and half_b take blocks of %d samples in turn, and spp is %u, in one block; it must be "
+            "at least %d",
+            SF_LANES, o->spp, SF_LANES + 1);
     return SF_STATUS_OK;
 }
 
@@ -118,14 +121,16 @@ static sf_status check_checkpoint(const sf_render_options *o, sf_error *error) {
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "checkpoint_seconds is %g; it must be in [0, 1e9]",
                        o->checkpoint_seconds);
     if (o->checkpoint_path && (o->aovs || o->mask))
-        return sf_fail(error, SF_STATUS_UNSUPPORTED, "checkpoint goes with neither aovs nor a mask: the file holds neither");
+        return sf_fail(error, SF_STATUS_UNSUPPORTED,
+                       "checkpoint goes with neither aovs nor a mask: the file holds neither");
     if (o->checkpoint_path && !*o->checkpoint_path)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "checkpoint is an empty path; give a file's");
     if (o->checkpoint_path && o->seeds != SF_SEEDS_PIXEL)
-        return sf_fail(error, SF_STATUS_INVALID_VALUE,
-                       "checkpoint needs seeds pixel; with seeds %s the samples depend on which thread takes which tile, "
-                       "and a render that is resumed would not be the same",
-                       sf_seed_policy_name(o->seeds));
+        return sf_fail(
+            error, SF_STATUS_INVALID_VALUE,
+            "checkpoint needs seeds pixel; with seeds %s the samples depend on which thread takes which tile, "
+            "and a render that is resumed would not be the same",
+            sf_seed_policy_name(o->seeds));
     return SF_STATUS_OK;
 }
 

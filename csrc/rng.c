@@ -50,17 +50,13 @@ static void copy_used(sf_rng *to, const sf_rng *from) {
 
 static int is_lcg(sf_rng_kind kind) { return kind == SF_RNG_LCG32 || kind == SF_RNG_LCG64; }
 
-const char *sf_rng_name(sf_rng_kind kind) {
-    return (unsigned)kind < SF_RNG_COUNT ? methods[kind]->name : NULL;
-}
+const char *sf_rng_name(sf_rng_kind kind) { return (unsigned)kind < SF_RNG_COUNT ? methods[kind]->name : NULL; }
 
 const char *sf_rng_description(sf_rng_kind kind) {
     return (unsigned)kind < SF_RNG_COUNT ? methods[kind]->description : NULL;
 }
 
-unsigned sf_rng_native_bits(sf_rng_kind kind) {
-    return (unsigned)kind < SF_RNG_COUNT ? methods[kind]->native_bits : 0;
-}
+unsigned sf_rng_native_bits(sf_rng_kind kind) { return (unsigned)kind < SF_RNG_COUNT ? methods[kind]->native_bits : 0; }
 
 sf_status sf_rng_find(const char *name, sf_rng_kind *kind, sf_error *error) {
     for (unsigned k = 0; k < SF_RNG_COUNT; ++k)

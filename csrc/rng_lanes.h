@@ -134,8 +134,7 @@ static inline void philox4x64_rounds(sf_lanes64 x[WIDE_SETS][4], uint64_t beside
 }
 
 /* Whole groups of WIDE_GROUP; returns how many blocks they are. */
-static size_t philox4x64_lanes(const uint64_t *counter, const uint64_t *key, size_t blocks,
-                               uint64_t *SF_RESTRICT out) {
+static size_t philox4x64_lanes(const uint64_t *counter, const uint64_t *key, size_t blocks, uint64_t *SF_RESTRICT out) {
     size_t done = 0;
     for (; blocks - done >= WIDE_GROUP; done += WIDE_GROUP) {
         sf_lanes64 x[WIDE_SETS][4];

@@ -12,7 +12,7 @@
 typedef struct sf_rng_method {
     const char *name, *description;
     unsigned native_bits;
-    unsigned field_bits;  /* 32 or 64 */
+    unsigned field_bits; /* 32 or 64 */
     unsigned field_count;
     /* Seeds with stream 0; refuses what the method cannot take. The constants of an LCG are set. */
     sf_status (*seed)(sf_rng *rng, uint64_t seed, sf_error *error);
@@ -44,13 +44,13 @@ int sf_rng_is_scaled(const sf_rng *rng);
 uint32_t sf_rng_next_half(sf_rng *rng);
 
 /* Defines draw_NEXT: a loop on a copy, which the compiler keeps in registers. */
-#define SF_RNG_DRAW(member, next, T)                                                                         \
-    static void draw_##next(sf_rng *rng, size_t count, void *out, const sf_rng_kernels *kernels) {           \
-        (void)kernels;                                                                                       \
-        T *words = out;                                                                                      \
-        sf_##member g = rng->as.member;                                                                      \
-        for (size_t i = 0; i < count; ++i) words[i] = sf_##next##_next(&g);                                  \
-        rng->as.member = g;                                                                                  \
+#define SF_RNG_DRAW(member, next, T)                                                               \
+    static void draw_##next(sf_rng *rng, size_t count, void *out, const sf_rng_kernels *kernels) { \
+        (void)kernels;                                                                             \
+        T *words = out;                                                                            \
+        sf_##member g = rng->as.member;                                                            \
+        for (size_t i = 0; i < count; ++i) words[i] = sf_##next##_next(&g);                        \
+        rng->as.member = g;                                                                        \
     }
 
 /* The affine map x -> a x + c mod m (0 = 2^64) done `count` times (Brown 1994, "Random Number

@@ -4,13 +4,14 @@
 /* Philox behind sf_rng, for words of 32 and 64 bits alike: included once for each, with METHOD
  * (philox4x32, philox4x64) and WORD defined, and after blocks_before_carry_METHOD. */
 
-static void SF_JOIN(start_block, METHOD)(SF_JOIN(sf, METHOD) *g, unsigned used) {
+static void SF_JOIN(start_block, METHOD)(SF_JOIN(sf, METHOD) * g, unsigned used) {
     SF_JOIN(SF_JOIN(sf, METHOD), block)(g->counter, g->key, g->block);
-    for (int i = 0; i < 4 && ++g->counter[i] == 0; ++i) {}
+    for (int i = 0; i < 4 && ++g->counter[i] == 0; ++i) {
+    }
     g->used = used;
 }
 
-static void SF_JOIN(add_blocks, METHOD)(SF_JOIN(sf, METHOD) *g, uint64_t blocks) {
+static void SF_JOIN(add_blocks, METHOD)(SF_JOIN(sf, METHOD) * g, uint64_t blocks) {
     for (int i = 0; i < 4 && blocks; ++i) {
         WORD before = g->counter[i];
         g->counter[i] = (WORD)(before + blocks);
@@ -52,11 +53,11 @@ static const char *SF_JOIN(fault, METHOD)(const sf_rng *rng) {
     SF_JOIN(sf, METHOD) g = rng->as.METHOD;
     WORD block[4];
     if (g.used > 4) return "of a block of four words, 0 .. 4 are used";
-    for (int i = 0; i < 4 && g.counter[i]-- == 0; ++i) {}
+    for (int i = 0; i < 4 && g.counter[i]-- == 0; ++i) {
+    }
     SF_JOIN(SF_JOIN(sf, METHOD), block)(g.counter, g.key, block);
-    return g.used == 4 || memcmp(block, g.block, sizeof block) == 0
-               ? NULL
-               : "the block is not that of the counter before";
+    return g.used == 4 || memcmp(block, g.block, sizeof block) == 0 ? NULL
+                                                                    : "the block is not that of the counter before";
 }
 
 #undef METHOD

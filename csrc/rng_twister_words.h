@@ -8,15 +8,14 @@
 #define TOP (sizeof(WORD) * 8 - 2)
 
 /* The authors' init_genrand. */
-static void SF_JOIN(start, METHOD)(SF_JOIN(sf, METHOD) *g, WORD seed) {
+static void SF_JOIN(start, METHOD)(SF_JOIN(sf, METHOD) * g, WORD seed) {
     g->words[0] = seed;
-    for (WORD i = 1; i < LENGTH; ++i)
-        g->words[i] = SEED_MULTIPLIER * (g->words[i - 1] ^ g->words[i - 1] >> TOP) + i;
+    for (WORD i = 1; i < LENGTH; ++i) g->words[i] = SEED_MULTIPLIER * (g->words[i - 1] ^ g->words[i - 1] >> TOP) + i;
     g->used = LENGTH;
 }
 
 /* The authors' init_by_array: every word of the key reaches every word of the state. */
-static void SF_JOIN(start_by_key, METHOD)(SF_JOIN(sf, METHOD) *g, const WORD *key, WORD key_length) {
+static void SF_JOIN(start_by_key, METHOD)(SF_JOIN(sf, METHOD) * g, const WORD *key, WORD key_length) {
     SF_JOIN(start, METHOD)(g, 19650218);
     WORD *x = g->words, i = 1, j = 0;
     for (WORD k = 0; k < LENGTH; ++k) {

@@ -13,19 +13,19 @@ int sf_rng_is_scaled(const sf_rng *rng) {
 /* ---- methods of 64 bits ---- */
 
 /* Gives out a waiting half, or the low one of `draw()`, whose high half then waits. */
-#define HALF(rng, draw)                                                                                      \
-    do {                                                                                                     \
-        uint32_t half = (rng)->pending;                                                                      \
-        int waited = (rng)->has_pending;                                                                     \
-        uint64_t word = waited ? 0 : (draw);                                                                 \
-        (rng)->pending = (uint32_t)(word >> 32);                                                             \
-        (rng)->has_pending = !waited;                                                                        \
-        return waited ? half : (uint32_t)word;                                                               \
+#define HALF(rng, draw)                          \
+    do {                                         \
+        uint32_t half = (rng)->pending;          \
+        int waited = (rng)->has_pending;         \
+        uint64_t word = waited ? 0 : (draw);     \
+        (rng)->pending = (uint32_t)(word >> 32); \
+        (rng)->has_pending = !waited;            \
+        return waited ? half : (uint32_t)word;   \
     } while (0)
 
-#define WIDE(member, next)                                                                                   \
-    static uint64_t next##_raw(void *rng) { return sf_##next##_next(&((sf_rng *)rng)->as.member); }          \
-    static uint32_t next##_half(void *rng) { HALF((sf_rng *)rng, next##_raw(rng)); }                         \
+#define WIDE(member, next)                                                                          \
+    static uint64_t next##_raw(void *rng) { return sf_##next##_next(&((sf_rng *)rng)->as.member); } \
+    static uint32_t next##_half(void *rng) { HALF((sf_rng *)rng, next##_raw(rng)); }                \
     static double next##_f64(void *rng) { return sf_double_from_bits(next##_raw(rng)); }
 
 WIDE(xorshift64, xorshift64)
@@ -45,20 +45,20 @@ static double double_of_words(uint32_t first, uint32_t second) {
     return (double)(int32_t)(first >> 5) * 0x1p-27 + (double)(int32_t)(second >> 6) * 0x1p-53;
 }
 
-#define NARROW(next, bits)                                                                                   \
-    static uint64_t next##_raw(void *rng) { return sf_##next##_next(&((sf_rng *)rng)->as.next); }            \
-    static uint32_t next##_top(void *rng) { return (uint32_t)next##_raw(rng) << (32 - (bits)); }             \
-    static uint32_t next##_full32(void *rng) {                                                               \
-        uint32_t first = next##_top(rng);                                                                    \
-        return (bits) == 32 ? first : (first & 0xffff0000u) | next##_top(rng) >> 16;                         \
-    }                                                                                                        \
-    static uint64_t next##_full64(void *rng) {                                                               \
-        uint64_t first = next##_full32(rng);                                                                 \
-        return first << 32 | next##_full32(rng);                                                             \
-    }                                                                                                        \
-    static double next##_f64(void *rng) {                                                                    \
-        uint32_t first = next##_top(rng);                                                                    \
-        return double_of_words(first, next##_top(rng));                                                      \
+#define NARROW(next, bits)                                                                        \
+    static uint64_t next##_raw(void *rng) { return sf_##next##_next(&((sf_rng *)rng)->as.next); } \
+    static uint32_t next##_top(void *rng) { return (uint32_t)next##_raw(rng) << (32 - (bits)); }  \
+    static uint32_t next##_full32(void *rng) {                                                    \
+        uint32_t first = next##_top(rng);                                                         \
+        return (bits) == 32 ? first : (first & 0xffff0000u) | next##_top(rng) >> 16;              \
+    }                                                                                             \
+    static uint64_t next##_full64(void *rng) {                                                    \
+        uint64_t first = next##_full32(rng);                                                      \
+        return first << 32 | next##_full32(rng);                                                  \
+    }                                                                                             \
+    static double next##_f64(void *rng) {                                                         \
+        uint32_t first = next##_top(rng);                                                         \
+        return double_of_words(first, next##_top(rng));                                           \
     }
 
 NARROW(minstd, 31)
@@ -110,24 +110,15 @@ static double lcg64_f64(void *rng) { return sf_double_from_bits(lcg64_full64(rng
 #define NARROW_VALUES(next) {next##_full64, next##_full32, next##_f64, next##_raw}
 
 static const sf_rng_callbacks values[SF_RNG_COUNT] = {
-    [SF_RNG_MINSTD] = NARROW_VALUES(minstd),
-    [SF_RNG_LCG32] = NARROW_VALUES(lcg32),
-    [SF_RNG_LCG64] = NARROW_VALUES(lcg64),
-    [SF_RNG_RANDU] = NARROW_VALUES(randu),
-    [SF_RNG_RAN1] = NARROW_VALUES(ran1),
-    [SF_RNG_RAN2] = NARROW_VALUES(ran2),
-    [SF_RNG_XORSHIFT64] = WIDE_VALUES(xorshift64),
-    [SF_RNG_XORSHIFT64_LRL] = WIDE_VALUES(xorshift64_lrl),
-    [SF_RNG_COMBINED] = WIDE_VALUES(combined),
-    [SF_RNG_MT19937] = NARROW_VALUES(mt19937),
-    [SF_RNG_MT19937_64] = WIDE_VALUES(mt19937_64),
-    [SF_RNG_PCG32] = NARROW_VALUES(pcg32),
-    [SF_RNG_PCG64DXSM] = WIDE_VALUES(pcg64dxsm),
-    [SF_RNG_XOSHIRO256PP] = WIDE_VALUES(xoshiro256pp),
-    [SF_RNG_SFC64] = WIDE_VALUES(sfc64),
-    [SF_RNG_PHILOX4X32] = NARROW_VALUES(philox4x32),
-    [SF_RNG_PHILOX4X64] = WIDE_VALUES(philox4x64),
-    [SF_RNG_SPLITMIX64] = WIDE_VALUES(splitmix64),
+    [SF_RNG_MINSTD] = NARROW_VALUES(minstd),       [SF_RNG_LCG32] = NARROW_VALUES(lcg32),
+    [SF_RNG_LCG64] = NARROW_VALUES(lcg64),         [SF_RNG_RANDU] = NARROW_VALUES(randu),
+    [SF_RNG_RAN1] = NARROW_VALUES(ran1),           [SF_RNG_RAN2] = NARROW_VALUES(ran2),
+    [SF_RNG_XORSHIFT64] = WIDE_VALUES(xorshift64), [SF_RNG_XORSHIFT64_LRL] = WIDE_VALUES(xorshift64_lrl),
+    [SF_RNG_COMBINED] = WIDE_VALUES(combined),     [SF_RNG_MT19937] = NARROW_VALUES(mt19937),
+    [SF_RNG_MT19937_64] = WIDE_VALUES(mt19937_64), [SF_RNG_PCG32] = NARROW_VALUES(pcg32),
+    [SF_RNG_PCG64DXSM] = WIDE_VALUES(pcg64dxsm),   [SF_RNG_XOSHIRO256PP] = WIDE_VALUES(xoshiro256pp),
+    [SF_RNG_SFC64] = WIDE_VALUES(sfc64),           [SF_RNG_PHILOX4X32] = NARROW_VALUES(philox4x32),
+    [SF_RNG_PHILOX4X64] = WIDE_VALUES(philox4x64), [SF_RNG_SPLITMIX64] = WIDE_VALUES(splitmix64),
 };
 
 static const sf_rng_callbacks *values_of(const sf_rng *rng) {

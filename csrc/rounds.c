@@ -110,8 +110,9 @@ static bool decide_pixel(const sf_rounds *r, uint32_t x, uint32_t y, size_t stat
     const sf_render_options *o = &r->options;
     const sf_film_summary *summary = &r->film->summary;
     bool full = sf_film_taken(pixel) + o->start >= sf_rounds_most(r);
-    if (o->start + sf_film_taken(pixel) > r->to && state == SF_RUNNING) return false; /* decided here before, by an easier tolerance */
-    if (o->spp && !full && state == SF_RUNNING) return false; /* nothing to tell before the end */
+    if (o->start + sf_film_taken(pixel) > r->to && state == SF_RUNNING)
+        return false;                                                  /* decided here before, by an easier tolerance */
+    if (o->spp && !full && state == SF_RUNNING) return false;          /* nothing to tell before the end */
     if (sf_film_taken(pixel) == 0 && state != SF_RUNNING) return true; /* not a page of it is touched; see close_all */
     pixel->half_width = sf_stop_half_width(r->film, o, x, y, r->z);
     bool met = !o->spp && summary->tolerance >= 0 && sf_film_taken(pixel) >= o->min_spp &&

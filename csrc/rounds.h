@@ -54,12 +54,12 @@ typedef struct sf_rounds {
     bool in_lap;       /* a lap has begun and not ended */
     uint32_t look;     /* where the lap ends, unless the render does */
     sf_lap lap;
-    double target;     /* of a budget: half-widths beyond it are to be lowered */
-    double *worst;     /* by tile: scratch of choosing pixels */
+    double target; /* of a budget: half-widths beyond it are to be lowered */
+    double *worst; /* by tile: scratch of choosing pixels */
     uint32_t *least;
     size_t *chosen;
     bool level_fixed;
-    double z;          /* standard errors in a half-width */
+    double z; /* standard errors in a half-width */
     double start, deadline;
     sf_progress progress;
     sf_atomic_size state;
@@ -88,7 +88,9 @@ static inline sf_film_pixel *sf_rounds_pixel(const sf_rounds *r, uint32_t cell, 
     return r->film->pixels + (size_t)sf_rounds_y(r, cell, m) * r->film->width + sf_rounds_x(r, cell, m);
 }
 
-static inline uint64_t sf_film_taken(const sf_film_pixel *pixel) { return pixel->moments.count + pixel->moments.nonfinite; }
+static inline uint64_t sf_film_taken(const sf_film_pixel *pixel) {
+    return pixel->moments.count + pixel->moments.nonfinite;
+}
 
 /* The most samples that a pixel may take. */
 static inline uint32_t sf_rounds_most(const sf_rounds *r) {
@@ -110,19 +112,18 @@ static inline sf_cell_range sf_rounds_tile(const sf_rounds *r, uint32_t tile) {
     uint32_t left = r->tile_x0 + tile % r->tile_columns * r->tile_cells;
     uint32_t top = r->tile_y0 + tile / r->tile_columns * r->tile_cells;
     return (sf_cell_range){.x0 = clamp_below(left, x0),
-                        .y0 = clamp_below(top, y0),
-                        .x1 = at_most(left + r->tile_cells - x0, r->cell_columns),
-                        .y1 = at_most(top + r->tile_cells - y0, r->cell_rows)};
+                           .y0 = clamp_below(top, y0),
+                           .x1 = at_most(left + r->tile_cells - x0, r->cell_columns),
+                           .y1 = at_most(top + r->tile_cells - y0, r->cell_rows)};
 }
 
 /* Calls `visit` for every cell of the tile that has a pixel in `cells`, r->active or r->open. */
 static inline void sf_rounds_each_cell(sf_rounds *r, unsigned worker, uint32_t tile, const uint64_t *cells,
-                          void (*visit)(sf_rounds *, sf_rounds_worker *, uint32_t)) {
+                                       void (*visit)(sf_rounds *, sf_rounds_worker *, uint32_t)) {
     sf_cell_range range = sf_rounds_tile(r, tile);
     for (uint32_t y = range.y0; y < range.y1; ++y)
         for (uint32_t x = range.x0; x < range.x1; ++x)
-            if (cells[(size_t)y * r->cell_columns + x])
-                visit(r, r->workers + worker, y * r->cell_columns + x);
+            if (cells[(size_t)y * r->cell_columns + x]) visit(r, r->workers + worker, y * r->cell_columns + x);
 }
 
 /* sampling.c: takes the round's samples of a tile; an sf_pool_work_fn over the tiles listed. */

@@ -9,7 +9,8 @@
 /* Adds the block to its pixel's statistics, and to what the stopping rule keeps. */
 static void add_block(sf_rounds *r, const sf_block *block, const sf_block_statistics *statistics) {
     sf_film_pixel *pixel = r->film->pixels + block->pixel;
-    bool lap_begins = r->lap.levels && r->from && sf_film_taken(pixel) == r->from && sf_stop_is_look(&r->options, r->from);
+    bool lap_begins =
+        r->lap.levels && r->from && sf_film_taken(pixel) == r->from && sf_stop_is_look(&r->options, r->from);
     if (lap_begins) sf_dyadic_begin(pixel);
     sf_film_add(pixel, statistics);
     const double *means = statistics->moments.mean;
@@ -66,7 +67,8 @@ static uint32_t block_end(const sf_rounds *r, uint32_t n) {
     return end < r->to ? end : r->to;
 }
 
-static void choose_keys(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell, uint64_t active, uint64_t keys[SF_CELL_PIXELS]) {
+static void choose_keys(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell, uint64_t active,
+                        uint64_t keys[SF_CELL_PIXELS]) {
     for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m) {
         if (!(active >> m & 1u)) continue;
         uint64_t x = sf_rounds_x(r, cell, m) + r->film->x0, y = sf_rounds_y(r, cell, m) + r->film->y0;

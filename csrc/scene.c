@@ -20,9 +20,7 @@ sf_mesh sf_mesh_default(void) {
     return mesh;
 }
 
-sf_camera sf_camera_default(void) {
-    return (sf_camera){.position = {0, 0, 1}, .up = {0, 1, 0}, .vertical_fov = 40};
-}
+sf_camera sf_camera_default(void) { return (sf_camera){.position = {0, 0, 1}, .up = {0, 1, 0}, .vertical_fov = 40}; }
 
 sf_status sf_scene_create(sf_scene **out, sf_error *error) {
     *out = NULL;
@@ -76,8 +74,8 @@ static sf_status check_color(const char *what, const float *color, float upper, 
 static sf_status check_vector(const char *what, const float *v, sf_error *error) {
     for (int c = 0; c < 3; ++c)
         if (!(fabsf(v[c]) <= LENGTH_LIMIT))
-            return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s[%d] is %g; it must be finite and at most %g in size", what,
-                           c, (double)v[c], (double)LENGTH_LIMIT);
+            return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s[%d] is %g; it must be finite and at most %g in size",
+                           what, c, (double)v[c], (double)LENGTH_LIMIT);
     return SF_STATUS_OK;
 }
 
@@ -226,8 +224,8 @@ sf_status sf_scene_set_camera(sf_scene *scene, const sf_camera *camera, sf_error
                        (double)camera->aperture_radius, (double)LENGTH_LIMIT);
     if (!(camera->focus_distance >= 0 && camera->focus_distance <= LENGTH_LIMIT))
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
-                       "focus_distance is %g; it must be in (0, %g], or 0 for the target's", (double)camera->focus_distance,
-                       (double)LENGTH_LIMIT);
+                       "focus_distance is %g; it must be in (0, %g], or 0 for the target's",
+                       (double)camera->focus_distance, (double)LENGTH_LIMIT);
     double f[3], f2 = 0, up2 = 0, cross2 = 0;
     for (int c = 0; c < 3; ++c) {
         f[c] = (double)camera->target[c] - camera->position[c];
@@ -235,7 +233,8 @@ sf_status sf_scene_set_camera(sf_scene *scene, const sf_camera *camera, sf_error
         up2 += (double)camera->up[c] * camera->up[c];
     }
     if (f2 == 0)
-        return sf_fail(error, SF_STATUS_INVALID_VALUE, "the camera looks at itself: position and target are both (%g, %g, %g)",
+        return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                       "the camera looks at itself: position and target are both (%g, %g, %g)",
                        (double)camera->position[0], (double)camera->position[1], (double)camera->position[2]);
     for (int c = 0; c < 3; ++c) {
         int d = (c + 1) % 3, e = (c + 2) % 3;
@@ -261,7 +260,8 @@ sf_status sf_scene_set_max_bounces(sf_scene *scene, uint32_t max_bounces, sf_err
     sf_status status = refuse_committed(scene, error);
     if (status) return status;
     if (max_bounces > SF_MAX_BOUNCES)
-        return sf_fail(error, SF_STATUS_INVALID_VALUE, "max_bounces is %u; it must be 0 to %d", max_bounces, SF_MAX_BOUNCES);
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "max_bounces is %u; it must be 0 to %d", max_bounces,
+                       SF_MAX_BOUNCES);
     scene->max_bounces = max_bounces;
     return SF_STATUS_OK;
 }

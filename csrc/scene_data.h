@@ -46,11 +46,11 @@ typedef enum sf_light_field {
     SF_LIGHT_WEIGHT_R, /* radiance / (density by area), with the 1/pi of a diffuse surface */
     SF_LIGHT_WEIGHT_G,
     SF_LIGHT_WEIGHT_B,
-    SF_LIGHT_PDF,       /* density by area over all the lights together */
-    SF_LIGHT_RECTANGLE, /* 1 for a parallelogram, 0 for a triangle */
-    SF_LIGHT_SAMPLED,   /* how many fields a sample needs: those above */
+    SF_LIGHT_PDF,                     /* density by area over all the lights together */
+    SF_LIGHT_RECTANGLE,               /* 1 for a parallelogram, 0 for a triangle */
+    SF_LIGHT_SAMPLED,                 /* how many fields a sample needs: those above */
     SF_LIGHT_KEEP = SF_LIGHT_SAMPLED, /* alias table: probability to keep the piece drawn */
-    SF_LIGHT_FIELDS = 32 /* two cache lines a piece, whichever of many is drawn */
+    SF_LIGHT_FIELDS = 32              /* two cache lines a piece, whichever of many is drawn */
 } sf_light_field;
 
 typedef struct sf_light_table {
@@ -62,8 +62,8 @@ typedef struct sf_light_table {
 
 /* A mesh as the scene keeps it. */
 typedef struct sf_scene_mesh {
-    sf_mesh mesh;          /* its arrays are the caller's, or the copies below */
-    float *vertex_copy;    /* NULL where Embree reads the caller's */
+    sf_mesh mesh;       /* its arrays are the caller's, or the copies below */
+    float *vertex_copy; /* NULL where Embree reads the caller's */
     uint32_t *index_copy;
 } sf_scene_mesh;
 

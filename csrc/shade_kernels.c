@@ -36,7 +36,8 @@ static void apply_filter(sf_batch *b, sf_pixel_filter filter) {
 /* Directions through the pixels: forward + x right + y up, before they are normalized. */
 static void aim(sf_batch *b, const sf_camera_frame *camera) {
     for (uint32_t block = 0; block < b->block_count; ++block) {
-        float left = (float)b->blocks[block].x - camera->half_width, top = camera->half_height - (float)b->blocks[block].y;
+        float left = (float)b->blocks[block].x - camera->half_width,
+              top = camera->half_height - (float)b->blocks[block].y;
         for (uint32_t i = block * SF_LANES; i < (block + 1) * SF_LANES; ++i) {
             float x = (left + b->coordinate[0][i]) * camera->pixel, y = (top - b->coordinate[1][i]) * camera->pixel;
             for (int c = 0; c < 3; ++c)
@@ -146,7 +147,8 @@ static void later_emission(sf_batch *b, const sf_scene *scene, uint32_t n) {
         float light_pdf = b->light_pdf[i] * b->distance[i] * b->distance[i] / cosine;
         float weight = power_weight(b->pdf[i], light_pdf);
         for (int c = 0; c < 3; ++c)
-            b->emission[c][i] = (along > 0) & (b->light_pdf[i] > 0) ? b->throughput[c][i] * b->emission[c][i] * weight : 0.0f;
+            b->emission[c][i] =
+                (along > 0) & (b->light_pdf[i] > 0) ? b->throughput[c][i] * b->emission[c][i] * weight : 0.0f;
     }
 }
 
@@ -253,7 +255,7 @@ static uint32_t compact(sf_batch *b, uint32_t count) {
 /* ---- light ---- */
 
 /* The coordinates of the living paths; they are where they belong while all of them live. */
-static float (*by_ray(sf_batch *b, uint32_t count, int coordinates))[SF_PATHS] {
+static float (*by_ray(sf_batch *b, uint32_t count, int coordinates)) [SF_PATHS] {
     if (count == b->block_count * SF_LANES) return b->coordinate;
     for (int c = 0; c < coordinates; ++c)
         for (uint32_t i = 0; i < count; ++i) b->coordinate_by_ray[c][i] = b->coordinate[c][b->path[i]];
@@ -438,5 +440,5 @@ static void gather_statistics(sf_batch *b) {
 }
 
 const sf_shade_kernels SF_AT_LEVEL(sf_shade_kernels) = {
-    camera, first_radiance, later_radiance, first_vertex,     later_vertex,      compact,
-    light,  sort_shadow_rays, add_light,      surface,          gather_statistics};
+    camera, first_radiance,   later_radiance, first_vertex, later_vertex,     compact,
+    light,  sort_shadow_rays, add_light,      surface,      gather_statistics};

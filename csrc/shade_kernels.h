@@ -11,8 +11,7 @@
 typedef struct sf_shade_kernels {
     /* Camera rays of every lane of the blocks, from coordinate[0 .. 1], and on a lens from
      * lens[0 .. 1]; NULL for a pinhole. */
-    void (*camera)(sf_batch *batch, const sf_camera_frame *camera, sf_pixel_filter filter,
-                   float (*lens)[SF_PATHS]);
+    void (*camera)(sf_batch *batch, const sf_camera_frame *camera, sf_pixel_filter filter, float (*lens)[SF_PATHS]);
 
     /* Radiance of the camera rays: emission seen directly, else the background. */
     void (*first_radiance)(sf_batch *batch, const sf_scene *scene);

@@ -23,14 +23,13 @@ void sf_sobol_matrix(uint32_t dimension, uint32_t columns[32]) {
     }
     unsigned degree = SF_SOBOL_MAX_DEGREE;
     while (dimension < sf_sobol_first_dimension[degree]) --degree;
-    uint32_t at = sf_sobol_first_bit[degree] +
-                  (dimension - sf_sobol_first_dimension[degree]) * ((degree - 1) * (degree + 2) / 2);
+    uint32_t at =
+        sf_sobol_first_bit[degree] + (dimension - sf_sobol_first_dimension[degree]) * ((degree - 1) * (degree + 2) / 2);
     /* Read the inner coefficients a_1 (highest) .. a_(s-1), and m_1 .. m_s. */
     uint32_t coefficients = table_bits(at, degree - 1);
     at += degree - 1;
     columns[0] = UINT32_C(1) << 31;
-    for (unsigned i = 2; i <= degree; at += i - 1, ++i)
-        columns[i - 1] = (table_bits(at, i - 1) << 1 | 1) << (32 - i);
+    for (unsigned i = 2; i <= degree; at += i - 1, ++i) columns[i - 1] = (table_bits(at, i - 1) << 1 | 1) << (32 - i);
     /* Continue by the recurrence (Joe & Kuo 2008, eq. 2): v_k = a_1 v_(k-1) ^ … ^ a_(s-1)
      * v_(k-s+1) ^ v_(k-s) ^ v_(k-s) / 2^s. */
     for (unsigned k = degree; k < 32; ++k) {

@@ -9,9 +9,9 @@
 #include "sunfleck/elementary.h"
 
 #define LEVELS 4
-#define FIRST_LOOK 32u          /* two blocks: one difference */
-#define FIRST_REPLICATES 128u   /* a block for each of eight */
-#define WIDEST_STEP 256u        /* of the lecture's rule */
+#define FIRST_LOOK 32u        /* two blocks: one difference */
+#define FIRST_REPLICATES 128u /* a block for each of eight */
+#define WIDEST_STEP 256u      /* of the lecture's rule */
 
 /* What the averaged variance is multiplied by: pixels whose estimate came out low are the ones
  * that stop. Measured, bench/coverage.py: 1.0 leaves 92 % coverage on the Cornell box, 1.4 95 %. */

@@ -54,7 +54,8 @@ void sf_stop_look_at_pool(sf_film *film, uint32_t pool, uint32_t look, sf_lap la
 /* How many standard errors make the rule's half-width. */
 double sf_stop_factor(const sf_render_options *options);
 
-/* The half-width of pixel (x, y) of the film by the rule; z is sf_stop_factor's. To be called when all pools have been looked at. Infinity where fewer than two samples were taken. */
+/* The half-width of pixel (x, y) of the film by the rule; z is sf_stop_factor's. To be called when all pools have been
+ * looked at. Infinity where fewer than two samples were taken. */
 float sf_stop_half_width(const sf_film *film, const sf_render_options *options, uint32_t x, uint32_t y, double z);
 
 #endif

@@ -47,8 +47,8 @@ static const kind_traits kinds[SF_DISCREPANCY_KIND_COUNT] = {
                                  centered_term},
     [SF_DISCREPANCY_WRAPAROUND] = {"wraparound", "boxes on the torus, squared (Hickernell 1998)", 4.0 / 3.0,
                                    wraparound_term},
-    [SF_DISCREPANCY_MIXTURE] = {"mixture", "of centered and wraparound, squared (Zhou, Fang & Ning 2013)",
-                                19.0 / 12.0, mixture_term},
+    [SF_DISCREPANCY_MIXTURE] = {"mixture", "of centered and wraparound, squared (Zhou, Fang & Ning 2013)", 19.0 / 12.0,
+                                mixture_term},
     [SF_DISCREPANCY_L2_STAR] = {"l2-star", "boxes from the origin, not squared (Warnock 1972)", 1.0 / 3.0,
                                 l2_star_term},
 };
@@ -82,13 +82,13 @@ sf_status sf_uniformity_check(const double *points, size_t count, uint32_t dims,
     for (size_t i = 0; i < count * dims; ++i)
         if (!(points[i] >= 0.0 && (closed ? points[i] <= 1.0 : points[i] < 1.0)))
             return sf_fail(error, SF_STATUS_INVALID_VALUE,
-                           "coordinate %zu of point %zu is %.17g; give values in [0,1%s", i % dims, i / dims,
-                           points[i], closed ? "]" : ")");
+                           "coordinate %zu of point %zu is %.17g; give values in [0,1%s", i % dims, i / dims, points[i],
+                           closed ? "]" : ")");
     return SF_STATUS_OK;
 }
 
-sf_status sf_columns_init(sf_columns *columns, const double *points, size_t count, uint32_t dims,
-                          const size_t *order, sf_error *error) {
+sf_status sf_columns_init(sf_columns *columns, const double *points, size_t count, uint32_t dims, const size_t *order,
+                          sf_error *error) {
     *columns = (sf_columns){.count = count, .stride = count, .dims = dims};
     columns->values = sf_aligned_alloc(count * dims * sizeof(double));
     if (!columns->values) return sf_fail_memory(error, "the points", count * dims * sizeof(double));

@@ -33,16 +33,16 @@ static double sum(const double *x, size_t n) {
     return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
 }
 
-#define PAIR_SUM(kind)                                                                              \
-    static double kind##_sum(const sf_columns *points, size_t i, size_t begin, size_t count) {      \
-        double product[SF_UNIFORMITY_BLOCK];                                                        \
-        for (size_t j = 0; j < count; ++j) product[j] = 1.0;                                        \
-        for (uint32_t k = 0; k < points->dims; ++k) {                                               \
-            const double *SF_RESTRICT x = points->values + k * points->stride;                      \
-            const double a = x[i];                                                                  \
-            for (size_t j = 0; j < count; ++j) product[j] *= kind##_term(a, x[begin + j]);          \
-        }                                                                                           \
-        return sum(product, count);                                                                 \
+#define PAIR_SUM(kind)                                                                         \
+    static double kind##_sum(const sf_columns *points, size_t i, size_t begin, size_t count) { \
+        double product[SF_UNIFORMITY_BLOCK];                                                   \
+        for (size_t j = 0; j < count; ++j) product[j] = 1.0;                                   \
+        for (uint32_t k = 0; k < points->dims; ++k) {                                          \
+            const double *SF_RESTRICT x = points->values + k * points->stride;                 \
+            const double a = x[i];                                                             \
+            for (size_t j = 0; j < count; ++j) product[j] *= kind##_term(a, x[begin + j]);     \
+        }                                                                                      \
+        return sum(product, count);                                                            \
     }
 
 PAIR_SUM(centered)
@@ -56,20 +56,20 @@ static inline double toroidal_gap(double a, double b) {
     return d < other ? d : other;
 }
 
-#define NEAREST(name, gap)                                                                          \
-    static double name(const sf_columns *points, size_t i, size_t begin, size_t count) {            \
-        double square[SF_UNIFORMITY_BLOCK], least = INFINITY;                                       \
-        for (size_t j = 0; j < count; ++j) square[j] = 0.0;                                         \
-        for (uint32_t k = 0; k < points->dims; ++k) {                                               \
-            const double *SF_RESTRICT x = points->values + k * points->stride;                      \
-            const double a = x[i];                                                                  \
-            for (size_t j = 0; j < count; ++j) {                                                    \
-                double d = gap(a, x[begin + j]);                                                    \
-                square[j] += d * d;                                                                 \
-            }                                                                                       \
-        }                                                                                           \
-        for (size_t j = 0; j < count; ++j) least = square[j] < least ? square[j] : least;           \
-        return least;                                                                               \
+#define NEAREST(name, gap)                                                                \
+    static double name(const sf_columns *points, size_t i, size_t begin, size_t count) {  \
+        double square[SF_UNIFORMITY_BLOCK], least = INFINITY;                             \
+        for (size_t j = 0; j < count; ++j) square[j] = 0.0;                               \
+        for (uint32_t k = 0; k < points->dims; ++k) {                                     \
+            const double *SF_RESTRICT x = points->values + k * points->stride;            \
+            const double a = x[i];                                                        \
+            for (size_t j = 0; j < count; ++j) {                                          \
+                double d = gap(a, x[begin + j]);                                          \
+                square[j] += d * d;                                                       \
+            }                                                                             \
+        }                                                                                 \
+        for (size_t j = 0; j < count; ++j) least = square[j] < least ? square[j] : least; \
+        return least;                                                                     \
     }
 
 NEAREST(nearest, gap)

@@ -22,10 +22,10 @@ typedef struct net {
     uint32_t dims, base;
     unsigned levels, bits; /* bits: of a digit, where the base is 2^bits; else 0 */
     uint32_t powers[MAX_LEVELS];
-    uint32_t *digits;  /* [dims][count]: the first `levels` digits of each coordinate */
-    uint32_t *scratch; /* [threads][count + dims] */
+    uint32_t *digits;                /* [dims][count]: the first `levels` digits of each coordinate */
+    uint32_t *scratch;               /* [threads][count + dims] */
     unsigned threads, shares, level; /* shares: of a level's shapes, one a thread at work */
-    sf_atomic_size failed; /* 1 once an interval of the level has been found wrong */
+    sf_atomic_size failed;           /* 1 once an interval of the level has been found wrong */
 } net;
 
 static sf_status measure_count(net *n, sf_error *error) {

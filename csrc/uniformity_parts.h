@@ -13,8 +13,8 @@ sf_status sf_uniformity_check(const double *points, size_t count, uint32_t dims,
 
 /* The checked points by columns, those of one value of `order` (NULL: as they come) first; freed
  * with sf_columns_release. */
-sf_status sf_columns_init(sf_columns *columns, const double *points, size_t count, uint32_t dims,
-                          const size_t *order, sf_error *error);
+sf_status sf_columns_init(sf_columns *columns, const double *points, size_t count, uint32_t dims, const size_t *order,
+                          sf_error *error);
 void sf_columns_release(sf_columns *columns);
 
 /* The indices 0 .. count - 1 in rising order of their points' first coordinates, equal ones by

@@ -2,10 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The Sunfleck developers
 # SPDX-License-Identifier: Apache-2.0
 
-# Checks the layout of C and C++ against .clang-format, where clang-format is installed.
+# Checks the layout of C and C++ against .clang-format; the generated files are as their scripts leave them.
 set -eu
-if ! command -v clang-format >/dev/null; then
-    echo "note: no clang-format here; layout not checked" >&2
-    exit 0
-fi
-git ls-files '*.c' '*.h' '*.cpp' | grep -v '^csrc/tables/' | xargs clang-format --dry-run -Werror
+format=.venv/bin/clang-format # of the package's own list, so that all have one version of it
+git ls-files '*.c' '*.h' '*.cpp' | grep -v -e '^csrc/tables/' -e '^csrc/mapping_f64.h' | xargs "$format" --dry-run -Werror

@@ -146,20 +146,24 @@ void bind_weighted(nb::module_ &m) {
 void bind_channels(nb::module_ &m) {
     using channels = sf_channel_moments;
     bind_zeroed<channels>(m, "ChannelMoments")
-        .def("add",
-             [](shared<channels> &self, rows_of_three<float> x) {
-                 self.use([&](channels *now, sf_error *) {
-                     sf_channel_moments_add_f32(now, x.shape(0), x.data());
-                     return SF_STATUS_OK;
-                 });
-             }, "x"_a.noconvert())
-        .def("add",
-             [](shared<channels> &self, rows_of_three<double> x) {
-                 self.use([&](channels *now, sf_error *) {
-                     sf_channel_moments_add_f64(now, x.shape(0), x.data());
-                     return SF_STATUS_OK;
-                 });
-             }, "x"_a.noconvert())
+        .def(
+            "add",
+            [](shared<channels> &self, rows_of_three<float> x) {
+                self.use([&](channels *now, sf_error *) {
+                    sf_channel_moments_add_f32(now, x.shape(0), x.data());
+                    return SF_STATUS_OK;
+                });
+            },
+            "x"_a.noconvert())
+        .def(
+            "add",
+            [](shared<channels> &self, rows_of_three<double> x) {
+                self.use([&](channels *now, sf_error *) {
+                    sf_channel_moments_add_f64(now, x.shape(0), x.data());
+                    return SF_STATUS_OK;
+                });
+            },
+            "x"_a.noconvert())
         .def("merge", &merge<channels, sf_channel_moments_merge>, "other"_a)
         .def(
             "at",

@@ -25,8 +25,8 @@ struct integrand {
         std::copy(points, points + count * dims, copy.get());
         nb::capsule owner(copy.get(), [](void *p) noexcept { delete[] static_cast<double *>(p); });
         nb::ndarray<nb::numpy, double, nb::ndim<2>> block(copy.release(), {count, dims}, owner);
-        auto answer = nb::cast<nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>>(
-            function(block), false);
+        auto answer =
+            nb::cast<nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>>(function(block), false);
         if (answer.shape(0) != count) throw nb::value_error("the function's values must be as many as the points");
         std::copy(answer.data(), answer.data() + count, values);
     }
@@ -89,9 +89,7 @@ nb::typed<nb::dict, nb::str, nb::any> integrate(nb::object function, const std::
     options.threads = threads;
     integrand user{function, nullptr};
     auto result = std::make_unique<sf_integral>();
-    call([&](sf_error *refused) {
-        return sf_integrate(call_integrand, &user, &options, result.get(), refused);
-    });
+    call([&](sf_error *refused) { return sf_integrate(call_integrand, &user, &options, result.get(), refused); });
     if (user.failure) std::rethrow_exception(user.failure);
     return as_dict(*result);
 }

@@ -4,8 +4,8 @@
 #include <nanobind/stl/string.h>
 
 #include <nanobind/stl/pair.h>
-#include <atomic>
 #include <pthread.h>
+#include <atomic>
 #include <string>
 #include <utility>
 
@@ -42,8 +42,8 @@ sf_crew *shared_crew() {
 
 template <class T, sf_status (*Fill)(const sf_points_options *, size_t, T *, sf_error *)>
 void fill(nb::ndarray<T, nb::ndim<2>, nb::c_contig, nb::device::cpu> out, const std::string &pattern,
-          const std::string &scramble, uint32_t dims, uint32_t pad, uint64_t seed, uint64_t first,
-          uint64_t total, uint32_t threads) {
+          const std::string &scramble, uint32_t dims, uint32_t pad, uint64_t seed, uint64_t first, uint64_t total,
+          uint32_t threads) {
     sf_points_options options = sf_points_options_default();
     options.pattern = find_pattern(pattern);
     options.scramble = find_scramble(scramble);

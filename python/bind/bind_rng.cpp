@@ -112,14 +112,15 @@ void bind_rng(nb::module_ &m) {
                 return list;
             },
             "count"_a)
-        .def("state", [](generator &g) {
-            std::vector<uint64_t> words(sf_rng_state_size(g.value.kind));
-            g.use([&](sf_rng *rng, sf_error *) {
-                sf_rng_get_state(rng, words.data());
-                return SF_STATUS_OK;
-            });
-            return words;
-        })
+        .def("state",
+             [](generator &g) {
+                 std::vector<uint64_t> words(sf_rng_state_size(g.value.kind));
+                 g.use([&](sf_rng *rng, sf_error *) {
+                     sf_rng_get_state(rng, words.data());
+                     return SF_STATUS_OK;
+                 });
+                 return words;
+             })
         .def(
             "set_state",
             [](generator &g, const std::vector<uint64_t> &words) {

@@ -331,7 +331,7 @@ class Scene:
         if info.degenerate_count:
             _log.info("%d of %d triangles have no area", info.degenerate_count, info.triangle_count)
         if info.copied_bytes:
-            _log.info("%d bytes of mesh arrays end at a page's end and were copied", info.copied_bytes)
+            _log.debug("%d bytes of mesh arrays end at a page's end and were copied", info.copied_bytes)
 
     @property
     def meshes(self) -> tuple[Mesh, ...]:

@@ -35,9 +35,9 @@ typedef struct mapping_case {
     double loss;    /* how many times farther than others a round trip may end; 0 = 1 */
 } mapping_case;
 
-#define TRIANGLE_CASES(name, chart)                            \
-    {name, {0, 0, 0, 1, 0, 0, 0, 1, 0}, chart, 0, 0, 0, 0},    \
-    {name, {0.3, -1, 2, 1, 0.5, 2.5, -0.25, 1, 0}, chart, 0, 0, 0, 0}
+#define TRIANGLE_CASES(name, chart)                         \
+    {name, {0, 0, 0, 1, 0, 0, 0, 1, 0}, chart, 0, 0, 0, 0}, \
+        {name, {0.3, -1, 2, 1, 0.5, 2.5, -0.25, 1, 0}, chart, 0, 0, 0, 0}
 
 static const mapping_case mapping_cases[] = {
     {SF_MAPPING_PIXEL_BOX, {0}, CHART_BOX, 0.5, 0, 0, 0},
@@ -48,7 +48,7 @@ static const mapping_case mapping_cases[] = {
     {SF_MAPPING_PIXEL_GAUSSIAN_TRUNCATED, {0.4, 0.5}, CHART_DISK, 0.5, 0.5, 0, 0},
     {SF_MAPPING_PIXEL_BLACKMAN_HARRIS, {1.5}, CHART_BOX, 1.5, 0, 0, 0},
     {SF_MAPPING_PIXEL_MITCHELL, {0}, CHART_BOX, 16.0 / 7.0, 0, 0, 0}, /* the zero crossing at 3/4 of the side */
-    {SF_MAPPING_PIXEL_LANCZOS, {0}, CHART_BOX, 4.0, 0, 0, 0}, /* those at multiples of 1/8 */
+    {SF_MAPPING_PIXEL_LANCZOS, {0}, CHART_BOX, 4.0, 0, 0, 0},         /* those at multiples of 1/8 */
     TRIANGLE_CASES(SF_MAPPING_TRIANGLE, CHART_TRIANGLE),
     TRIANGLE_CASES(SF_MAPPING_TRIANGLE_LOW_DISTORTION, CHART_TRIANGLE),
     TRIANGLE_CASES(SF_MAPPING_PARALLELOGRAM, CHART_RECTANGLE),

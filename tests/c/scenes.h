@@ -18,20 +18,20 @@
 
 #include "sunfleck/render.h"
 
-#define assert_ok(call)                                                          \
-    do {                                                                         \
-        sf_error error_ = {0};                                                   \
-        sf_error *error = &error_;                                               \
-        if ((call) != SF_STATUS_OK) fail_msg("%s: %s", #call, error_.message);   \
+#define assert_ok(call)                                                        \
+    do {                                                                       \
+        sf_error error_ = {0};                                                 \
+        sf_error *error = &error_;                                             \
+        if ((call) != SF_STATUS_OK) fail_msg("%s: %s", #call, error_.message); \
     } while (0)
 
 /* The call is refused with `code`, and the message has `part` in it. */
-#define assert_refused(code, part, call)                                         \
-    do {                                                                         \
-        sf_error error_ = {0};                                                   \
-        sf_error *error = &error_;                                               \
-        assert_int_equal((call), (code));                                        \
-        assert_int_equal(error_.status, (code));                                 \
+#define assert_refused(code, part, call)                                                        \
+    do {                                                                                        \
+        sf_error error_ = {0};                                                                  \
+        sf_error *error = &error_;                                                              \
+        assert_int_equal((call), (code));                                                       \
+        assert_int_equal(error_.status, (code));                                                \
         if (!strstr(error_.message, (part))) fail_msg("'%s' lacks '%s'", error_.message, part); \
     } while (0)
 

@@ -97,7 +97,8 @@ static void test_halves_are_alternate_blocks_of_sixteen(void **state) {
 
     options.spp = 40; /* samples 0-15 and 32-39; 16-31 */
     film = render(s.scene, &options);
-    const float *a = channel_data(film, "half_a.R"), *b = channel_data(film, "half_b.R"), *color = channel_data(film, "R");
+    const float *a = channel_data(film, "half_a.R"), *b = channel_data(film, "half_b.R"),
+                *color = channel_data(film, "R");
     for (size_t i = 0; i < values; ++i)
         assert_true(fabsf((24 * a[i] + 16 * b[i]) / 40 - color[i]) <= 4e-7f * color[i]); /* four roundings of floats */
     sf_film_destroy(film);

@@ -104,9 +104,7 @@ static uint32_t file_value(const char *name) {
     return value;
 }
 
-static int stop_at_round(const sf_progress *progress, void *user) {
-    return progress->round >= *(const uint32_t *)user;
-}
+static int stop_at_round(const sf_progress *progress, void *user) { return progress->round >= *(const uint32_t *)user; }
 
 /* ---- resuming ---- */
 
@@ -345,12 +343,12 @@ static void test_what_differs_is_named_and_the_file_is_left(void **state) {
     size_t size, size_after;
     unsigned char *before = read_bytes(&size);
     sf_film *film;
-#define REFUSED(change, part)                                                                   \
-    do {                                                                                        \
-        sf_render_options o = made;                                                             \
-        change;                                                                                 \
-        assert_refused(SF_STATUS_INVALID_VALUE, part, sf_render(scene, &o, &film, error));      \
-        assert_null(film);                                                                      \
+#define REFUSED(change, part)                                                              \
+    do {                                                                                   \
+        sf_render_options o = made;                                                        \
+        change;                                                                            \
+        assert_refused(SF_STATUS_INVALID_VALUE, part, sf_render(scene, &o, &film, error)); \
+        assert_null(film);                                                                 \
     } while (0)
     REFUSED(o.seed = 2, "'render.ckpt' was made with seed 1; this render has seed 2");
     REFUSED(o.width = 25, "width 24, crop (0, 0, 24, 24); this render has width 25, crop (0, 0, 25, 24)");
@@ -397,7 +395,8 @@ static void test_every_option_that_a_film_describes_is_in_its_file(void **state)
         bool there = false;
         if (!strcmp(sf_film_attribute(film, i).name, "mask")) continue; /* refused beside a checkpoint */
         snprintf(name, sizeof name, "option.%s", sf_film_attribute(film, i).name);
-        for (uint32_t k = 0; k < file.count; ++k) there |= !strcmp((const char *)file.bytes + 24 + 64 * (size_t)k, name);
+        for (uint32_t k = 0; k < file.count; ++k)
+            there |= !strcmp((const char *)file.bytes + 24 + 64 * (size_t)k, name);
         if (!there) fail_msg("the file has no %s", name);
     }
     assert_true(found >= 17);
@@ -563,7 +562,9 @@ static void test_columns_of_structs_come_back(void **state) {
     } row;
     static row rows[3000], read[3000];
     for (size_t i = 0; i < 3000; ++i)
-        rows[i] = (row){.value = {(double)i, -1.0 / (double)(i + 1), INFINITY}, .number = (uint32_t)(i * i), .byte = (unsigned char)i};
+        rows[i] = (row){.value = {(double)i, -1.0 / (double)(i + 1), INFINITY},
+                        .number = (uint32_t)(i * i),
+                        .byte = (unsigned char)i};
     for (int way = 0; way < 2; ++way) {
         row *at = way ? read : rows;
         sf_array arrays[] = {{"value", SF_ARRAY_F64, 3, 3000, at->value, sizeof *at},
@@ -709,16 +710,16 @@ static void test_films_that_are_not_of_one_picture_do_not_merge(void **state) {
     sf_film *film = render(scene, &options), *none;
     lit_floor other;
     lit_floor_create(&other, 3);
-#define NOT_MERGED(of, change, part)                                                                          \
-    do {                                                                                                      \
-        sf_render_options o = options;                                                                        \
-        o.seed = 9;                                                                                           \
-        change;                                                                                               \
-        sf_film *with = render(of, &o);                                                                       \
-        assert_refused(SF_STATUS_INVALID_VALUE, part,                                                         \
-                       sf_film_merge((const sf_film *[]){film, with}, 2, &none, error));                      \
-        assert_null(none);                                                                                    \
-        sf_film_destroy(with);                                                                                \
+#define NOT_MERGED(of, change, part)                                                     \
+    do {                                                                                 \
+        sf_render_options o = options;                                                   \
+        o.seed = 9;                                                                      \
+        change;                                                                          \
+        sf_film *with = render(of, &o);                                                  \
+        assert_refused(SF_STATUS_INVALID_VALUE, part,                                    \
+                       sf_film_merge((const sf_film *[]){film, with}, 2, &none, error)); \
+        assert_null(none);                                                               \
+        sf_film_destroy(with);                                                           \
     } while (0)
     NOT_MERGED(other.scene, (void)0, "film 1 is of scene");
     NOT_MERGED(scene, o.width = 17, "frame of 16 x 16 pixels and film 2 of 17 x 16");

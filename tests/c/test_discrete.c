@@ -25,7 +25,10 @@ static void expect_refused(sf_status status, const sf_error *error, const char *
 static void make_weights(int kind, size_t n, double *w) {
     for (size_t i = 0; i < n; ++i) {
         double u = sf_double_from_bits(sf_hash64((uint64_t)kind, i));
-        w[i] = kind == 0 ? 1.0 : kind == 1 ? (i == n / 2 ? 1e6 : u) : kind == 2 ? (u < 0.7 ? 0.0 : u) : pow(10.0, 20.0 * u - 10.0);
+        w[i] = kind == 0   ? 1.0
+               : kind == 1 ? (i == n / 2 ? 1e6 : u)
+               : kind == 2 ? (u < 0.7 ? 0.0 : u)
+                           : pow(10.0, 20.0 * u - 10.0);
     }
     w[n / 3] = 1.0;
     if (kind == 2) w[0] = w[n - 1] = n > 3 ? 0.0 : 1.0;
@@ -57,7 +60,8 @@ static void test_an_alias_table_gives_every_entry_its_share(void **state) {
             for (size_t i = 0; i < n; ++i) total += w[i];
             for (size_t i = 0; i < n; ++i) {
                 /* Every keep is rounded by 2^-25 at most; a heavy entry has up to n of them over it. */
-                assert_true(fabs(share[i] - w[i] / total) <= 0x1p-25 * fmin(1.0, (1.0 + (double)n * w[i] / total) / (double)n) + 1e-14);
+                assert_true(fabs(share[i] - w[i] / total) <=
+                            0x1p-25 * fmin(1.0, (1.0 + (double)n * w[i] / total) / (double)n) + 1e-14);
                 if (w[i] == 0.0) assert_true(share[i] == 0.0);
             }
             free(w);
@@ -104,7 +108,8 @@ static void test_what_u_has_left_is_uniform(void **state) {
     for (int k = 0; k < 5; ++k) {
         assert_true(fabs(count[k] * 0x1p-20 - w[k] / 4.75) < 1e-5);
         /* Equidistant values in at most four runs: within a few spacings of 1/2 and 1/3. */
-        if (count[k] > 0.0) assert_true(fabs(sum[k] / count[k] - 0.5) < 1e-4 && fabs(square[k] / count[k] - 1.0 / 3.0) < 1e-4);
+        if (count[k] > 0.0)
+            assert_true(fabs(sum[k] / count[k] - 0.5) < 1e-4 && fabs(square[k] / count[k] - 1.0 / 3.0) < 1e-4);
     }
 }
 
@@ -141,7 +146,8 @@ static void test_bad_weights_are_refused_by_place_and_value(void **state) {
     expect_refused(sf_alias_build(good, 0, NULL, NULL, &error), &error, "count is 0");
     expect_refused(sf_piecewise_create_1d(negative, 3, &piecewise, &error), &error, "weights[1] is -2");
     expect_refused(sf_piecewise_create_2d(none, 2, 1, &piecewise, &error), &error, "all 2 weights");
-    expect_refused(sf_piecewise_create_2d(good, 0, 2, &piecewise, &error), &error, "0 x 2 cells; each must be 1 .. 2^24");
+    expect_refused(sf_piecewise_create_2d(good, 0, 2, &piecewise, &error), &error,
+                   "0 x 2 cells; each must be 1 .. 2^24");
     assert_null(piecewise);
     sf_piecewise_destroy(NULL);
 }
@@ -159,9 +165,11 @@ static void test_bad_points_are_refused_before_anything_is_written(void **state)
     sf_error error;
     sf_alias_table_create(good, 2, &table, NULL);
     sf_piecewise_create_1d(good, 2, &line, NULL);
-    expect_refused(sf_alias_table_sample_fill_f32(table, 3, u, index, &error), &error, "value 1 of u is 1; it must be in [0,1)");
+    expect_refused(sf_alias_table_sample_fill_f32(table, 3, u, index, &error), &error,
+                   "value 1 of u is 1; it must be in [0,1)");
     expect_refused(sf_alias_table_sample_fill_f64(table, 2, wide, index, &error), &error, "nan");
-    expect_refused(sf_alias_table_pdf_fill(table, 1, &out_of_range, y, &error), &error, "index 0 is 2; it must be 0 .. 1");
+    expect_refused(sf_alias_table_pdf_fill(table, 1, &out_of_range, y, &error), &error,
+                   "index 0 is 2; it must be 0 .. 1");
     expect_refused(sf_alias_table_invert_fill(table, 1, &zero, y, &error), &error, "weight is 0");
     expect_refused(sf_piecewise_sample_fill_f32(line, 3, u, x, &error), &error, "value 1 of u is 1");
     expect_refused(sf_piecewise_pdf_fill_f64(line, 2, wide, y, &error), &error, "value 1 of x is nan");
@@ -191,7 +199,8 @@ static void test_a_line_gives_every_cell_its_share(void **state) {
             for (size_t i = 0; i < POINTS; ++i) {
                 size_t cell = (size_t)(x[i] * (double)n);
                 assert_true(x[i] >= 0.0 && x[i] < 1.0 && (i == 0 || x[i] >= x[i - 1]));
-                assert_true(w[cell] > 0.0 && fabs(pdf[i] * total / (w[cell] * (double)n) - 1.0) < 1e-9 + 1e-15 * total / w[cell]);
+                assert_true(w[cell] > 0.0 &&
+                            fabs(pdf[i] * total / (w[cell] * (double)n) - 1.0) < 1e-9 + 1e-15 * total / w[cell]);
                 hits[cell] += 1.0;
             }
             /* Equidistant u: a cell's hits are its share, but for one at either end. */

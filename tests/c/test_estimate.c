@@ -167,7 +167,10 @@ static void test_arrays_leave_out_what_is_not_finite(void **state) {
     float x[600];
     sf_moments bulk = {0}, single = {0};
     for (int i = 0; i < 600; ++i) {
-        x[i] = i % 50 == 3 ? (float)NAN : i % 50 == 4 ? (float)INFINITY : i == 599 ? -(float)INFINITY : (float)uniform((uint64_t)i);
+        x[i] = i % 50 == 3   ? (float)NAN
+               : i % 50 == 4 ? (float)INFINITY
+               : i == 599    ? -(float)INFINITY
+                             : (float)uniform((uint64_t)i);
         sf_moments_add(&single, (double)x[i]);
     }
     sf_moments_add_f32(&bulk, 600, x);
@@ -265,15 +268,16 @@ static void test_too_few_samples_claim_nothing(void **state) {
 /* From 40-digit arithmetic; the classical ones agree with published tables. */
 static void test_normal_quantile_meets_known_values(void **state) {
     (void)state;
-    const double known[][2] = {{0.975, 1.95996398454005386},     {0.995, 2.57582930354890045},
-                               {0.75, 0.674489750196081743},     {0.9999999, 5.19933758229066109},
-                               {1e-10, -6.3613409024040562},     {1e-300, -37.0470962993611992},
+    const double known[][2] = {{0.975, 1.95996398454005386},       {0.995, 2.57582930354890045},
+                               {0.75, 0.674489750196081743},       {0.9999999, 5.19933758229066109},
+                               {1e-10, -6.3613409024040562},       {1e-300, -37.0470962993611992},
                                {0.5000001, 2.5066282733116483e-7}, {0.025, -1.95996398454005421}};
     for (size_t i = 0; i < sizeof known / sizeof *known; ++i)
         expect_near(sf_normal_quantile(known[i][0]), known[i][1], 1e-14);
     assert_true(sf_normal_quantile(0.5) == 0.0);
     assert_true(isinf(sf_normal_quantile(0.0)) && isinf(sf_normal_quantile(1.0)));
-    assert_true(isnan(sf_normal_quantile(-0.1)) && isnan(sf_normal_quantile(1.1)) && isnan(sf_normal_quantile((double)NAN)));
+    assert_true(isnan(sf_normal_quantile(-0.1)) && isnan(sf_normal_quantile(1.1)) &&
+                isnan(sf_normal_quantile((double)NAN)));
     expect_near(sf_normal_factor(0.95), 1.959963984540054, 1e-13);
 }
 

@@ -348,9 +348,17 @@ static void test_bad_options_are_refused_before_any_call(void **state) {
     (void)state;
     const sf_integrate_options good = sf_integrate_options_default();
     sf_integrate_options bad[11];
-    const char *const words[11] = {"absolute tolerance is -1", "relative tolerance is nan", "the tolerance is 0",
-                                   "confidence is 1", "replicates is 1", "min_samples is 1", "max_samples is 100",
-                                   "range of values is [2, 1]", "dims is 0", "pattern is 99", "scramble"};
+    const char *const words[11] = {"absolute tolerance is -1",
+                                   "relative tolerance is nan",
+                                   "the tolerance is 0",
+                                   "confidence is 1",
+                                   "replicates is 1",
+                                   "min_samples is 1",
+                                   "max_samples is 100",
+                                   "range of values is [2, 1]",
+                                   "dims is 0",
+                                   "pattern is 99",
+                                   "scramble"};
     for (int k = 0; k < 11; ++k) bad[k] = good;
     bad[0].absolute = -1.0;
     bad[1].relative = (double)NAN;

@@ -34,7 +34,8 @@ static void ggx_lengths(const mapping_case *c, const double *u, double *sum, dou
     double x = p[0] * p[3], y = p[1] * p[4], z = p[2] / sqrt(x * x + y * y + p[2] * p[2]);
     double depth = u[1] * (1.0 + z), across = sqrt(1.0 - z * z);
     *ring = sqrt(depth * (2.0 - depth));
-    double cx = *ring * cos(TURN * u[0]), cy = *ring * sin(TURN * u[0]), scale = across > 0.0 ? across / hypot(x, y) : 0.0;
+    double cx = *ring * cos(TURN * u[0]), cy = *ring * sin(TURN * u[0]),
+           scale = across > 0.0 ? across / hypot(x, y) : 0.0;
     *sum = sqrt((cx + x * scale) * (cx + x * scale) + (cy + y * scale) * (cy + y * scale) +
                 (1.0 - depth + z) * (1.0 - depth + z));
 }
@@ -48,7 +49,9 @@ static void allowed_error(const mapping_case *c, const double *u, double allowed
         case SF_MAPPING_PIXEL_GAUSSIAN:
         case SF_MAPPING_PIXEL_GAUSSIAN_TRUNCATED: {
             /* x = 1/2 + a: rounded by 3 units of max(1/2, a); ds = 2 pi r a' da, dt = da / (2 pi a). */
-            double share = c->mapping == SF_MAPPING_PIXEL_GAUSSIAN ? 1.0 : -expm1(-0.5 * pow(c->parameters[1] / c->parameters[0], 2));
+            double share = c->mapping == SF_MAPPING_PIXEL_GAUSSIAN
+                               ? 1.0
+                               : -expm1(-0.5 * pow(c->parameters[1] / c->parameters[0], 2));
             double r = sqrt(-2.0 * log1p(-u[0] * share)), a = c->parameters[0] * r, rounding = 3.0 * (0.5 + a);
             allowed[0] += rounding / c->parameters[0] / share;
             allowed[1] += rounding / (TURN * a + 1e-30);
@@ -109,7 +112,8 @@ static void expect_round_trip(const mapping_case *c, const double *u, const doub
         if (is_angle(c->mapping, k) && error > 0.5) error = 1.0 - error;
         if (!(error <= allowed[k] * epsilon) || !(back[k] >= 0.0 && back[k] < 1.0))
             fail_msg("%s (case %zu): u = (%.17g, %.17g) comes back as (%.17g, %.17g), %.1f units off, allowed %.1f",
-                     sf_mapping_name(c->mapping), (size_t)(c - mapping_cases), u[0], u[1], back[0], back[1], error / epsilon, allowed[k]);
+                     sf_mapping_name(c->mapping), (size_t)(c - mapping_cases), u[0], u[1], back[0], back[1],
+                     error / epsilon, allowed[k]);
     }
 }
 
@@ -124,7 +128,8 @@ static void test_floats_come_back_within_stated_units(void **state) {
         assert_int_equal(sf_mapping_sample_fill_f32(c->mapping, 65536, u, p.f32_at, NULL, x, NULL), SF_STATUS_OK);
         assert_int_equal(sf_mapping_invert_fill_f32(c->mapping, 65536, x, p.f32_at, NULL, back, NULL), SF_STATUS_OK);
         for (size_t k = 0; k < 65536; ++k) {
-            double given[2] = {(double)u[2 * k], (double)u[2 * k + 1]}, got[2] = {(double)back[2 * k], (double)back[2 * k + 1]};
+            double given[2] = {(double)u[2 * k], (double)u[2 * k + 1]},
+                   got[2] = {(double)back[2 * k], (double)back[2 * k + 1]};
             expect_round_trip(c, given, got, 0x1p-24);
         }
     }
@@ -190,8 +195,9 @@ static int is_documented(sf_mapping mapping, const float *u, float pdf) {
 
 static void test_every_u_gives_a_finite_sample_of_positive_density(void **state) {
     (void)state;
-    const float edges[] = {0.0f,  0x1p-149f, 0x1p-126f, 0x1p-100f, 0x1p-52f,     0x1p-40f, 0x1p-24f, 0x1p-12f,      0.125f,
-                           0.25f, 0.375f,    0.5f,      0.75f,     0.5f - 0x1p-25f, 0.5f + 0x1p-24f, 1.0f - 0x1p-12f, SF_UNIT_MAX_F};
+    const float edges[] = {0.0f,     0x1p-149f,       0x1p-126f,       0x1p-100f,       0x1p-52f,     0x1p-40f,
+                           0x1p-24f, 0x1p-12f,        0.125f,          0.25f,           0.375f,       0.5f,
+                           0.75f,    0.5f - 0x1p-25f, 0.5f + 0x1p-24f, 1.0f - 0x1p-12f, SF_UNIT_MAX_F};
     enum { EDGES = sizeof edges / sizeof *edges };
     for (size_t i = 0; i < CASE_COUNT; ++i) {
         const mapping_case *c = &mapping_cases[i];
@@ -205,7 +211,8 @@ static void test_every_u_gives_a_finite_sample_of_positive_density(void **state)
                 for (size_t k = 0; k < width; ++k) assert_true(isfinite(x[k]));
                 sf_mapping_pdf_fill_f32(c->mapping, 1, x, p.f32_at, NULL, &pdf, NULL);
                 if (!(pdf > 0.0f && pdf < (float)INFINITY) && !is_documented(c->mapping, u, pdf))
-                    fail_msg("%s: pdf %g at u = (%a, %a)", sf_mapping_name(c->mapping), (double)pdf, (double)u[0], (double)u[1]);
+                    fail_msg("%s: pdf %g at u = (%a, %a)", sf_mapping_name(c->mapping), (double)pdf, (double)u[0],
+                             (double)u[1]);
                 sf_mapping_invert_fill_f32(c->mapping, 1, x, p.f32_at, NULL, back, NULL);
                 assert_true(back[0] >= 0.0f && back[0] < 1.0f && back[1] >= 0.0f && back[1] < 1.0f);
             }
@@ -225,7 +232,8 @@ static void test_directions_have_length_one(void **state) {
             double square = 0.0;
             for (int j = 0; j < 3; ++j) square += (double)x[3 * k + j] * (double)x[3 * k + j];
             if (!(fabs(sqrt(square) - 1.0) <= 2.0 * 0x1p-23))
-                fail_msg("%s (case %zu): length 1 + %g", sf_mapping_name(mapping_cases[i].mapping), i, sqrt(square) - 1.0);
+                fail_msg("%s (case %zu): length 1 + %g", sf_mapping_name(mapping_cases[i].mapping), i,
+                         sqrt(square) - 1.0);
         }
     }
 }
@@ -238,7 +246,8 @@ static void test_the_inverse_of_any_point_lies_in_the_unit_square(void **state) 
         case_parameters_init(&p, &mapping_cases[i]);
         for (int k = 0; k < 1000; ++k) {
             float x[3] = {values[k % 10], values[k / 10 % 10], values[k / 100]}, u[2];
-            assert_int_equal(sf_mapping_invert_fill_f32(mapping_cases[i].mapping, 1, x, p.f32_at, NULL, u, NULL), SF_STATUS_OK);
+            assert_int_equal(sf_mapping_invert_fill_f32(mapping_cases[i].mapping, 1, x, p.f32_at, NULL, u, NULL),
+                             SF_STATUS_OK);
             if (!(u[0] >= 0.0f && u[0] < 1.0f && u[1] >= 0.0f && u[1] < 1.0f))
                 fail_msg("%s: (%g, %g, %g) gives (%g, %g)", sf_mapping_name(mapping_cases[i].mapping), (double)x[0],
                          (double)x[1], (double)x[2], (double)u[0], (double)u[1]);
@@ -298,10 +307,11 @@ static void test_a_frame_is_orthonormal_and_right_handed_at_and_near_both_poles(
         }
         sf_frame_from_normal(n, t, b);
         sf_cross3(t, b, cross);
-        float worst = fabsf(sf_dot3(t, t) - 1.0f) + fabsf(sf_dot3(b, b) - 1.0f) + fabsf(sf_dot3(t, b)) + fabsf(sf_dot3(t, n)) +
-                      fabsf(sf_dot3(b, n));
+        float worst = fabsf(sf_dot3(t, t) - 1.0f) + fabsf(sf_dot3(b, b) - 1.0f) + fabsf(sf_dot3(t, b)) +
+                      fabsf(sf_dot3(t, n)) + fabsf(sf_dot3(b, n));
         for (int k = 0; k < 3; ++k) worst = fmaxf(worst, fabsf(cross[k] - n[k]));
-        if (!(worst < 3e-6f)) fail_msg("off by %g at (%g, %g, %g)", (double)worst, (double)n[0], (double)n[1], (double)n[2]);
+        if (!(worst < 3e-6f))
+            fail_msg("off by %g at (%g, %g, %g)", (double)worst, (double)n[0], (double)n[1], (double)n[2]);
         float world[3];
         const float pole[3] = {0.0f, 0.0f, 1.0f};
         sf_frame_to_world(t, b, n, pole, world);
@@ -359,7 +369,8 @@ static void test_bulk_is_the_inline_function_bit_for_bit_at_every_length(void **
     fill_unit(u, 600, 5);
     for (size_t count = 0; count <= 300; count += 7) {
         x[3 * count] = -7.0f;
-        assert_int_equal(sf_mapping_sample_fill_f32(SF_MAPPING_COSINE_HEMISPHERE, count, u, NULL, NULL, x, NULL), SF_STATUS_OK);
+        assert_int_equal(sf_mapping_sample_fill_f32(SF_MAPPING_COSINE_HEMISPHERE, count, u, NULL, NULL, x, NULL),
+                         SF_STATUS_OK);
         assert_true(x[3 * count] == -7.0f); /* not a value past the end */
         for (size_t i = 0; i < count; ++i) {
             float w[3];
@@ -377,8 +388,10 @@ static void test_parameters_may_differ_from_point_to_point(void **state) {
     fill_unit(u, 2 * COUNT, 1);
     fill_unit(a, 3 * COUNT, 2);
     fill_unit(b, 3 * COUNT, 3);
-    assert_int_equal(sf_mapping_sample_fill_f32(SF_MAPPING_TRIANGLE, COUNT, u, parameters, strides, x, NULL), SF_STATUS_OK);
-    assert_int_equal(sf_mapping_pdf_fill_f32(SF_MAPPING_TRIANGLE, COUNT, x, parameters, strides, pdf, NULL), SF_STATUS_OK);
+    assert_int_equal(sf_mapping_sample_fill_f32(SF_MAPPING_TRIANGLE, COUNT, u, parameters, strides, x, NULL),
+                     SF_STATUS_OK);
+    assert_int_equal(sf_mapping_pdf_fill_f32(SF_MAPPING_TRIANGLE, COUNT, x, parameters, strides, pdf, NULL),
+                     SF_STATUS_OK);
     for (size_t i = 0; i < COUNT; ++i) {
         float point[3];
         sf_triangle_sample(u[2 * i], u[2 * i + 1], a + 3 * i, b + 3 * i, c, point);
@@ -429,10 +442,12 @@ static void test_u_outside_the_interval_is_refused_before_anything_is_written(vo
         memset(x, 0x55, sizeof x);
         memset(wide_x, 0x55, sizeof wide_x);
         wide[2 * 637 + 1] = (double)(u[2 * 637 + 1] = wrong[i]);
-        expect_refused(sf_mapping_sample_fill_f32(SF_MAPPING_SPHERE, COUNT, u, NULL, NULL, x, &error), &error, "sphere: u[637][1]");
+        expect_refused(sf_mapping_sample_fill_f32(SF_MAPPING_SPHERE, COUNT, u, NULL, NULL, x, &error), &error,
+                       "sphere: u[637][1]");
         expect_refused(SF_STATUS_INVALID_VALUE, &error, shown[i]);
         expect_refused(SF_STATUS_INVALID_VALUE, &error, "[0,1)");
-        expect_refused(sf_mapping_sample_fill_f64(SF_MAPPING_SPHERE, COUNT, wide, NULL, NULL, wide_x, &error), &error, "u[637][1]");
+        expect_refused(sf_mapping_sample_fill_f64(SF_MAPPING_SPHERE, COUNT, wide, NULL, NULL, wide_x, &error), &error,
+                       "u[637][1]");
         for (size_t k = 0; k < sizeof x; ++k) assert_int_equal(((unsigned char *)x)[k], 0x55);
         for (size_t k = 0; k < sizeof wide_x; ++k) assert_int_equal(((unsigned char *)wide_x)[k], 0x55);
     }
@@ -454,9 +469,12 @@ static void test_parameters_out_of_range_are_refused_by_name(void **state) {
     sf_error error;
     expect_refused(sf_mapping_sample_fill_f32(SF_MAPPING_PIXEL_GAUSSIAN, 2, u, mu, NULL, x, &error), &error,
                    "pixel_gaussian: mu is 0; it must be in [1e-6, 1e6]");
-    expect_refused(sf_mapping_sample_fill_f32(SF_MAPPING_PIXEL_GAUSSIAN, 2, u, each, packed, x, &error), &error, "mu[1][0] is -1;");
-    expect_refused(sf_mapping_sample_fill_f32(SF_MAPPING_PIXEL_GAUSSIAN, 2, u, each, odd, x, &error), &error, "stride of mu is 2");
-    expect_refused(sf_mapping_sample_fill_f32(SF_MAPPING_TRIANGLE, 2, u, NULL, NULL, x, &error), &error, "a is missing");
+    expect_refused(sf_mapping_sample_fill_f32(SF_MAPPING_PIXEL_GAUSSIAN, 2, u, each, packed, x, &error), &error,
+                   "mu[1][0] is -1;");
+    expect_refused(sf_mapping_sample_fill_f32(SF_MAPPING_PIXEL_GAUSSIAN, 2, u, each, odd, x, &error), &error,
+                   "stride of mu is 2");
+    expect_refused(sf_mapping_sample_fill_f32(SF_MAPPING_TRIANGLE, 2, u, NULL, NULL, x, &error), &error,
+                   "a is missing");
     expect_refused(sf_mapping_sample_fill_f32(SF_MAPPING_COUNT, 2, u, NULL, NULL, x, &error), &error, "mapping is");
     expect_refused(sf_mapping_sample_fill_f32((sf_mapping)-1, 2, u, NULL, NULL, x, &error), &error, "mapping is -1");
 }

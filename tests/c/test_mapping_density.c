@@ -66,7 +66,8 @@ static void integrate_case(const mapping_case *c, double *shares) {
     case_parameters_init(&p, c);
     for (size_t i = 0; i < n; ++i) {
         size_t row = i / (SIDE * FINE), column = i % (SIDE * FINE);
-        double point[3] = {0.0, 0.0, 0.0}, weight_p, weight_q, p_at = node(row, &weight_p), q_at = node(column, &weight_q);
+        double point[3] = {0.0, 0.0, 0.0}, weight_p, weight_q, p_at = node(row, &weight_p),
+               q_at = node(column, &weight_q);
         measure[i] = chart_point(c, p_at, q_at, point) * weight_p * weight_q;
         for (size_t k = 0; k < width; ++k) x[i * width + k] = point[k];
     }
@@ -130,9 +131,7 @@ static void test_samples_have_the_density_that_the_pdf_states(void **state) {
  * for the jump of Mitchell's second derivative at the rim, 2/3: a part of h = 0.095 that holds it is
  * wrong by 2/3 h^3 / 24 at most, at four places. Elsewhere the Gaussian, cut at 6 sigma, has 2e-8
  * beyond. */
-static double quadrature_error(const mapping_case *c) {
-    return c->mapping == SF_MAPPING_PIXEL_MITCHELL ? 1e-4 : 1e-6;
-}
+static double quadrature_error(const mapping_case *c) { return c->mapping == SF_MAPPING_PIXEL_MITCHELL ? 1e-4 : 1e-6; }
 
 static void test_each_pdf_integrates_to_one(void **state) {
     (void)state;

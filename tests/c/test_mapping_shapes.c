@@ -68,7 +68,8 @@ static void test_a_polygon_is_filled_to_its_vertices_and_not_beyond(void **state
             assert_true(x[0] * x[0] + x[1] * x[1] <= 1.0f + 0x1p-21f);
         }
     const float square[2] = {0.49f, 0.49f}, outside[2] = {0.51f, 0.51f}; /* |x| + |y| < 1 */
-    assert_true(fabsf(sf_regular_polygon_pdf(square, 4.0f) - 0.5f) < 1e-6f && sf_regular_polygon_pdf(outside, 4.0f) == 0.0f);
+    assert_true(fabsf(sf_regular_polygon_pdf(square, 4.0f) - 0.5f) < 1e-6f &&
+                sf_regular_polygon_pdf(outside, 4.0f) == 0.0f);
 }
 
 static void test_an_annulus_may_be_a_disk_or_a_circle(void **state) {
@@ -141,10 +142,14 @@ static void test_mitchell_and_lanczos_are_their_formulas(void **state) {
     const double pi = SF_PI;
     for (int i = -400; i <= 400; ++i) {
         double x = i / 100.0, d = fabs(x), m = 0.0, l = 0.0;
-        if (d < 1.0) m = (7.0 * d * d * d - 12.0 * d * d + 16.0 / 3.0) / 6.0;
-        else if (d < 2.0) m = (-7.0 / 3.0 * d * d * d + 12.0 * d * d - 20.0 * d + 32.0 / 3.0) / 6.0;
-        if (d == 0.0) l = 1.0;
-        else if (d < 3.0) l = 3.0 * sin(pi * x) * sin(pi * x / 3.0) / (pi * pi * x * x);
+        if (d < 1.0)
+            m = (7.0 * d * d * d - 12.0 * d * d + 16.0 / 3.0) / 6.0;
+        else if (d < 2.0)
+            m = (-7.0 / 3.0 * d * d * d + 12.0 * d * d - 20.0 * d + 32.0 / 3.0) / 6.0;
+        if (d == 0.0)
+            l = 1.0;
+        else if (d < 3.0)
+            l = 3.0 * sin(pi * x) * sin(pi * x / 3.0) / (pi * pi * x * x);
         assert_true(fabs((double)sf_mitchell((float)x + 0.5f) - m) < 1e-6);
         assert_true(fabs((double)sf_lanczos((float)x + 0.5f) - l) < 1e-6);
         assert_true(fabs(sf_mitchell_f64(x + 0.5) - m) < 1e-14 && fabs(sf_lanczos_f64(x + 0.5) - l) < 1e-14);
@@ -184,7 +189,8 @@ static void test_the_height_of_a_cone_is_good_to_4_ulp(void **state) {
         float radius = unit(10, i) + 1e-6f, far = radius * (1.0f + 100.0f * unit(11, i));
         double sine = (double)radius / (double)far, height = sine * sine / (1.0 + sqrt(1.0 - sine * sine));
         /* From the side of a sphere sqrt(1 - sine) loses what the quotient was rounded by. */
-        if (sine < 0.99) worst_sphere = fmax(worst_sphere, fabs((double)sf_cone_height_of_sphere(radius, far) / height - 1.0));
+        if (sine < 0.99)
+            worst_sphere = fmax(worst_sphere, fabs((double)sf_cone_height_of_sphere(radius, far) / height - 1.0));
     }
     expect_below("height", worst, 8.0 * 0x1p-24);
     expect_below("height of a sphere", worst_sphere, 16.0 * 0x1p-24);
@@ -229,7 +235,8 @@ static void test_a_power_of_0_is_uniform_and_of_1_the_cosine(void **state) {
     for (uint64_t i = 0; i < 2000; ++i) {
         float s = unit(1, i), t = unit(2, i), w[3];
         sf_power_cosine_sample(s, t, 0.0f, w);
-        assert_true(fabsf(w[2] - (1.0f - t)) <= 0x1p-22f && fabs((double)sf_power_cosine_pdf(w, 0.0f) * TURN - 1.0) < 1e-6);
+        assert_true(fabsf(w[2] - (1.0f - t)) <= 0x1p-22f &&
+                    fabs((double)sf_power_cosine_pdf(w, 0.0f) * TURN - 1.0) < 1e-6);
         sf_power_cosine_sample(s, t, 1.0f, w);
         assert_true(fabsf(w[2] * w[2] - (1.0f - t)) <= 0x1p-21f);
         assert_true(fabsf(sf_power_cosine_pdf(w, 1.0f) - sf_cosine_hemisphere_pdf(w)) <= 1e-6f);
@@ -261,7 +268,8 @@ static void test_masking_is_smiths(void **state) {
             lambda[k] = 0.5 * (sqrt(1.0 + (double)alpha * (double)alpha * tan2) - 1.0);
         }
         assert_true(fabs((double)sf_ggx_masking(w, alpha, alpha) * (1.0 + lambda[0]) - 1.0) < 1e-5);
-        assert_true(fabs((double)sf_ggx_masking_shadowing(w, v, alpha, alpha) * (1.0 + lambda[0] + lambda[1]) - 1.0) < 1e-5);
+        assert_true(fabs((double)sf_ggx_masking_shadowing(w, v, alpha, alpha) * (1.0 + lambda[0] + lambda[1]) - 1.0) <
+                    1e-5);
     }
     const float horizon[3] = {1, 0, 0};
     assert_true(sf_ggx_masking(horizon, 0.5f, 0.5f) == 0.0f);

@@ -42,7 +42,8 @@ static void assert_full_frames_bits(const sf_film *film, const sf_film *full, co
         size_t bytes = part.type == SF_CHANNEL_UINT8 ? 1 : 4;
         for (uint32_t y = crop[1]; y < crop[3]; ++y)
             for (uint32_t x = crop[0]; x < crop[2]; ++x) {
-                const char *ours = (const char *)part.data + (y - crop[1]) * part.row_stride + (x - crop[0]) * part.pixel_stride;
+                const char *ours =
+                    (const char *)part.data + (y - crop[1]) * part.row_stride + (x - crop[0]) * part.pixel_stride;
                 const char *theirs = (const char *)whole.data + y * whole.row_stride + x * whole.pixel_stride;
                 if (mask[y][x] && memcmp(ours, theirs, bytes))
                     fail_msg("%s differs at (%u, %u)", part.name, (unsigned)x, (unsigned)y);
@@ -111,7 +112,8 @@ static void test_summary_and_level_are_of_the_masks_pixels(void **state) {
     for (int c = 0; c < 49; ++c) {
         bool touched = false;
         for (int m = 0; m < 64; ++m)
-            if (c / 7 * 8 + m / 8 < SIZE && c % 7 * 8 + m % 8 < SIZE) touched |= mask[c / 7 * 8 + m / 8][c % 7 * 8 + m % 8];
+            if (c / 7 * 8 + m / 8 < SIZE && c % 7 * 8 + m % 8 < SIZE)
+                touched |= mask[c / 7 * 8 + m / 8][c % 7 * 8 + m % 8];
         cells += touched;
     }
     assert_int_equal(summary.pixels, pixels);

@@ -129,8 +129,7 @@ static void test_sz_dimensions_of_256_share_two_digits_in_base_256(void **state)
             uint32_t rows[2][32], chosen[32] = {0};
             matrix_rows(SF_PATTERN_SZ, 512 + a, rows[0]);
             matrix_rows(SF_PATTERN_SZ, 512 + b, rows[1]);
-            for (int total = 1; total <= 4; ++total)
-                assert_true(fills_intervals(rows, 2, 8, total, total, chosen, 0));
+            for (int total = 1; total <= 4; ++total) assert_true(fills_intervals(rows, 2, 8, total, total, chosen, 0));
         }
 }
 

@@ -31,8 +31,8 @@ static void fill_from(uint64_t first, sf_pattern pattern, sf_scramble scramble, 
     assert_int_equal(sf_points_fill_f32(&options, N, filled, &error), SF_STATUS_OK);
 }
 
-#define EACH_EQUALS(call)                                                    \
-    for (uint32_t i = 0; i < N; ++i)                                         \
+#define EACH_EQUALS(call)            \
+    for (uint32_t i = 0; i < N; ++i) \
         for (uint32_t d = 0; d < D; ++d) assert_true(filled[i * D + d] == (call))
 
 static void test_one_coordinate_of_a_set_equals_the_fill(void **state) {

@@ -87,8 +87,8 @@ static sf_scene *spot_scene(lit_floor *s, float x, float y, uint32_t max_bounces
 static void test_floor_under_a_rectangle_light_has_its_analytic_radiance(void **state) {
     (void)state;
     static const float places[][2] = {{0, 0}, {0.8f, -0.3f}, {-1.5f, 1.2f}};
-    static const sf_pattern patterns[] = {SF_PATTERN_UNIFORM, SF_PATTERN_RANDOM, SF_PATTERN_JITTERED,
-                                          SF_PATTERN_HALTON, SF_PATTERN_SOBOL};
+    static const sf_pattern patterns[] = {SF_PATTERN_UNIFORM, SF_PATTERN_RANDOM, SF_PATTERN_JITTERED, SF_PATTERN_HALTON,
+                                          SF_PATTERN_SOBOL};
     lit_floor s = {make_square(5, 0, 1), make_square(0.5f, 2, -1), NULL};
     for (int i = 0; i < 3; ++i)
         for (size_t p = 0; p < sizeof patterns / sizeof *patterns; ++p) {
@@ -124,7 +124,8 @@ static void test_weighting_light_with_surface_rays_leaves_the_radiance(void **st
 
 /* The inside of a cube of side 2, all walls with the same albedo and emission. */
 static sf_scene *furnace(float albedo, float emission, uint32_t max_bounces) {
-    static const float corners[24] = {-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1, -1, -1, 1, 1, -1, 1, 1, 1, 1, -1, 1, 1};
+    static const float corners[24] = {-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1,
+                                      -1, -1, 1,  1, -1, 1,  1, 1, 1,  -1, 1, 1};
     static const uint32_t walls[36] = {0, 1, 2, 0, 2, 3, 4, 7, 6, 4, 6, 5, 0, 4, 5, 0, 5, 1,
                                        1, 5, 6, 1, 6, 2, 2, 6, 7, 2, 7, 3, 3, 7, 4, 3, 4, 0};
     sf_mesh mesh = sf_mesh_default();
@@ -606,9 +607,7 @@ static void test_time_limit_is_kept_and_said(void **state) {
     sf_scene_destroy(s.scene);
 }
 
-static int stop_at_round(const sf_progress *progress, void *user) {
-    return progress->round >= *(const uint32_t *)user;
-}
+static int stop_at_round(const sf_progress *progress, void *user) { return progress->round >= *(const uint32_t *)user; }
 
 static void test_progress_can_stop_the_render_which_keeps_what_it_has(void **state) {
     (void)state;
@@ -634,13 +633,13 @@ static void test_bad_options_are_refused_by_name(void **state) {
     lit_floor_create(&s, 1);
     sf_film *film;
     const sf_render_options good = options_for(8, 4);
-#define REFUSED(part, assignment)                                                                            \
-    do {                                                                                                     \
-        sf_render_options options = good;                                                                    \
-        assignment;                                                                                          \
-        film = (sf_film *)&s;                                                                                \
-        assert_refused(SF_STATUS_INVALID_VALUE, part, sf_render(s.scene, &options, &film, error));           \
-        assert_null(film);                                                                                   \
+#define REFUSED(part, assignment)                                                                  \
+    do {                                                                                           \
+        sf_render_options options = good;                                                          \
+        assignment;                                                                                \
+        film = (sf_film *)&s;                                                                      \
+        assert_refused(SF_STATUS_INVALID_VALUE, part, sf_render(s.scene, &options, &film, error)); \
+        assert_null(film);                                                                         \
     } while (0)
     REFUSED("width is 0", options.width = 0);
     REFUSED("height is 65537", options.height = 65537);

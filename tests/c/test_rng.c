@@ -93,8 +93,8 @@ static void test_long_fills_agree_with_raw_draws_at_every_level(void **state) {
     static uint32_t halves[2 * N];
     static float floats[2 * N];
     static double doubles[N];
-    static const sf_rng_kind kinds[] = {SF_RNG_MT19937_64, SF_RNG_PCG64DXSM, SF_RNG_XOSHIRO256PP, SF_RNG_SFC64,
-                                        SF_RNG_PHILOX4X64, SF_RNG_SPLITMIX64};
+    static const sf_rng_kind kinds[] = {SF_RNG_MT19937_64, SF_RNG_PCG64DXSM,  SF_RNG_XOSHIRO256PP,
+                                        SF_RNG_SFC64,      SF_RNG_PHILOX4X64, SF_RNG_SPLITMIX64};
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k)
         for (int level = 0; level <= (int)SF_ISA_AVX512; ++level) {
             setenv("SUNFLECK_ISA", sf_isa_name((sf_isa)level), 1);
@@ -289,15 +289,13 @@ static void test_bad_states_are_refused_and_change_nothing(void **state) {
     uint64_t words[SF_RNG_STATE_MAX] = {0};
     sf_error error;
     sf_rng rng = seeded(SF_RNG_PCG32, 1), before = rng;
-    static const sf_rng_kind without_zero[] = {SF_RNG_MINSTD,     SF_RNG_LCG32,          SF_RNG_LCG64,
-                                               SF_RNG_RANDU,      SF_RNG_RAN1,           SF_RNG_RAN2,
-                                               SF_RNG_XORSHIFT64, SF_RNG_XORSHIFT64_LRL, SF_RNG_COMBINED,
-                                               SF_RNG_MT19937,    SF_RNG_MT19937_64,     SF_RNG_PCG32,
-                                               SF_RNG_PCG64DXSM,  SF_RNG_XOSHIRO256PP,   SF_RNG_PHILOX4X64};
+    static const sf_rng_kind without_zero[] = {
+        SF_RNG_MINSTD,     SF_RNG_LCG32,      SF_RNG_LCG64,          SF_RNG_RANDU,        SF_RNG_RAN1,
+        SF_RNG_RAN2,       SF_RNG_XORSHIFT64, SF_RNG_XORSHIFT64_LRL, SF_RNG_COMBINED,     SF_RNG_MT19937,
+        SF_RNG_MT19937_64, SF_RNG_PCG32,      SF_RNG_PCG64DXSM,      SF_RNG_XOSHIRO256PP, SF_RNG_PHILOX4X64};
     for (size_t i = 0; i < sizeof without_zero / sizeof *without_zero; ++i) {
         sf_rng_kind kind = without_zero[i];
-        assert_int_equal(sf_rng_set_state(&rng, kind, words, sf_rng_state_size(kind), &error),
-                         SF_STATUS_INVALID_VALUE);
+        assert_int_equal(sf_rng_set_state(&rng, kind, words, sf_rng_state_size(kind), &error), SF_STATUS_INVALID_VALUE);
         assert_non_null(strstr(error.message, sf_rng_name(kind)));
     }
     assert_int_equal(sf_rng_set_state(&rng, SF_RNG_SPLITMIX64, words, 3, &error), SF_STATUS_INVALID_VALUE);

@@ -76,10 +76,9 @@ static void test_streams_are_independent(void **state) {
 
 static void test_jumped_generators_are_independent(void **state) {
     (void)state; /* by the golden ratio of 2^64, for all that skip and whose period is 2^64 or more */
-    static const sf_rng_kind kinds[] = {
-        SF_RNG_XORSHIFT64, SF_RNG_XORSHIFT64_LRL, SF_RNG_COMBINED,   SF_RNG_MT19937,
-        SF_RNG_MT19937_64, SF_RNG_PCG32,          SF_RNG_PCG64DXSM,  SF_RNG_XOSHIRO256PP,
-        SF_RNG_PHILOX4X32, SF_RNG_PHILOX4X64,     SF_RNG_SPLITMIX64};
+    static const sf_rng_kind kinds[] = {SF_RNG_XORSHIFT64, SF_RNG_XORSHIFT64_LRL, SF_RNG_COMBINED,  SF_RNG_MT19937,
+                                        SF_RNG_MT19937_64, SF_RNG_PCG32,          SF_RNG_PCG64DXSM, SF_RNG_XOSHIRO256PP,
+                                        SF_RNG_PHILOX4X32, SF_RNG_PHILOX4X64,     SF_RNG_SPLITMIX64};
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k) {
         sf_rng start = seeded(kinds[k], 77);
         for (int t = 0; t < THREADS; ++t) {

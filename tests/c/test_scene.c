@@ -36,7 +36,8 @@ static void test_mesh_bad_values_are_refused(void **state) {
     const uint32_t beyond[6] = {0, 1, 2, 0, 2, 4};
     sf_mesh mesh = square_mesh(&s, 0.5f, 0), good = mesh;
     mesh.triangles = beyond;
-    assert_refused(SF_STATUS_INVALID_VALUE, "triangle 1 has vertex index 4; the mesh has 4", sf_scene_add_mesh(scene, &mesh, error));
+    assert_refused(SF_STATUS_INVALID_VALUE, "triangle 1 has vertex index 4; the mesh has 4",
+                   sf_scene_add_mesh(scene, &mesh, error));
     mesh = good;
     mesh.albedo[1] = 1.5f;
     assert_refused(SF_STATUS_INVALID_VALUE, "albedo[1] is 1.5", sf_scene_add_mesh(scene, &mesh, error));
@@ -144,7 +145,8 @@ static void test_coplanar_pair_is_one_rectangle_light_however_it_is_indexed(void
 
 static void test_folded_pair_and_kite_are_two_triangle_lights(void **state) {
     (void)state;
-    const float folded[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0.5f}, kite[12] = {-1, -1, 0, 1, -1, 0, 2, 2, 0, -1, 1, 0};
+    const float folded[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0.5f},
+                kite[12] = {-1, -1, 0, 1, -1, 0, 2, 2, 0, -1, 1, 0};
     const float *shapes[] = {folded, kite};
     for (int i = 0; i < 2; ++i) {
         sf_scene *scene = new_scene();
@@ -231,7 +233,8 @@ static void test_plan_grows_with_lens_lights_background_and_bounces(void **state
     assert_int_equal(plan.dimensions_per_path, 2 + 2 + 3 * 5);
     assert_int_equal(plan.shadow_rays, 3);
     assert_int_equal(plan.surface_rays, 3);
-    for (int stage = 0; stage < SF_STAGE_COUNT; ++stage) assert_int_equal(runs(&plan, (sf_stage)stage), stage != SF_STAGE_CAMERA);
+    for (int stage = 0; stage < SF_STAGE_COUNT; ++stage)
+        assert_int_equal(runs(&plan, (sf_stage)stage), stage != SF_STAGE_CAMERA);
     sf_scene_destroy(scene);
 }
 

@@ -59,14 +59,10 @@ const char *sf_isa_name(sf_isa isa);
  * holds, so the integer converts exactly, and the product with 2^-24 is exact too. The
  * largest result is 1 - 2^-24. Multiplying all 32 bits by 2^-32 would instead round up, and
  * return 1 for 128 of the 2^32 inputs. */
-static inline float sf_float_from_bits(uint32_t bits) {
-    return (float)(int32_t)(bits >> 8) * 0x1p-24f;
-}
+static inline float sf_float_from_bits(uint32_t bits) { return (float)(int32_t)(bits >> 8) * 0x1p-24f; }
 
 /* A double in [0,1), never 1, from the top 53 bits, exact for the same reason. */
-static inline double sf_double_from_bits(uint64_t bits) {
-    return (double)(int64_t)(bits >> 11) * 0x1p-53;
-}
+static inline double sf_double_from_bits(uint64_t bits) { return (double)(int64_t)(bits >> 11) * 0x1p-53; }
 
 /* The 32 bits in reverse order. */
 static inline uint32_t sf_reverse_bits32(uint32_t x) {

@@ -36,7 +36,7 @@ extern "C" {
 /* ---- scalar moments (Welford) ---- */
 
 typedef struct sf_moments {
-    uint64_t count;     /* of finite samples */
+    uint64_t count; /* of finite samples */
     double mean;
     double m2;          /* sum of squared deviations from the mean */
     uint64_t nonfinite; /* samples left out */
@@ -65,7 +65,9 @@ static inline void sf_moments_merge(sf_moments *m, const sf_moments *other) {
 }
 
 static inline double sf_moments_mean(const sf_moments *m) { return m->count ? m->mean : (double)NAN; }
-static inline double sf_moments_variance(const sf_moments *m) { return m->count ? m->m2 / (double)m->count : (double)NAN; }
+static inline double sf_moments_variance(const sf_moments *m) {
+    return m->count ? m->m2 / (double)m->count : (double)NAN;
+}
 static inline double sf_moments_sample_deviation(const sf_moments *m) {
     return m->count > 1 ? sqrt(m->m2 / ((double)m->count - 1.0)) : (double)INFINITY;
 }
@@ -361,10 +363,10 @@ typedef struct sf_confidence_sequence {
     double low, high, confidence;
     double target; /* half-width to reach, 0 for none; may change with what the past has shown */
     uint64_t count, nonfinite, outside;
-    double log_factor; /* log(2 / (1 - confidence)) */
-    double sum, square; /* of x, of (x - mean)^2; x scaled to [0,1] */
+    double log_factor;              /* log(2 / (1 - confidence)) */
+    double sum, square;             /* of x, of (x - mean)^2; x scaled to [0,1] */
     double bets, winnings, penalty; /* sums of lambda, lambda x, v psi(lambda) */
-    double lower, upper; /* the interval, scaled */
+    double lower, upper;            /* the interval, scaled */
 } sf_confidence_sequence;
 
 /* low < high, both finite, confidence in (0,1), target finite and >= 0. */

@@ -90,8 +90,8 @@ typedef struct sf_integral {
     uint64_t nonfinite; /* of them, NaN or infinite: counted, never averaged in */
     sf_integral_stop stop;
     uint32_t replicates;
-    int shifted;         /* 1 where replicates were shifted at random */
-    uint32_t looks;      /* entries of `history` */
+    int shifted;    /* 1 where replicates were shifted at random */
+    uint32_t looks; /* entries of `history` */
     sf_integral_look history[SF_INTEGRATE_MAX_LOOKS];
 } sf_integral;
 

@@ -108,9 +108,8 @@ sf_mapping_parameter sf_mapping_parameter_at(sf_mapping mapping, size_t index); 
  * Results are the inline functions' own, bit for bit (float); double has the same formulas. */
 sf_status sf_mapping_sample_fill_f32(sf_mapping mapping, size_t count, const float *u, const float *const *parameters,
                                      const size_t *strides, float *x, sf_error *error);
-sf_status sf_mapping_sample_fill_f64(sf_mapping mapping, size_t count, const double *u,
-                                     const double *const *parameters, const size_t *strides, double *x,
-                                     sf_error *error);
+sf_status sf_mapping_sample_fill_f64(sf_mapping mapping, size_t count, const double *u, const double *const *parameters,
+                                     const size_t *strides, double *x, sf_error *error);
 sf_status sf_mapping_pdf_fill_f32(sf_mapping mapping, size_t count, const float *x, const float *const *parameters,
                                   const size_t *strides, float *pdf, sf_error *error);
 sf_status sf_mapping_pdf_fill_f64(sf_mapping mapping, size_t count, const double *x, const double *const *parameters,
@@ -119,14 +118,12 @@ sf_status sf_mapping_pdf_fill_f64(sf_mapping mapping, size_t count, const double
  * f times the integral of |f| over that of f. */
 sf_status sf_mapping_weight_fill_f32(sf_mapping mapping, size_t count, const float *x, const float *const *parameters,
                                      const size_t *strides, float *weight, sf_error *error);
-sf_status sf_mapping_weight_fill_f64(sf_mapping mapping, size_t count, const double *x,
-                                     const double *const *parameters, const size_t *strides, double *weight,
-                                     sf_error *error);
+sf_status sf_mapping_weight_fill_f64(sf_mapping mapping, size_t count, const double *x, const double *const *parameters,
+                                     const size_t *strides, double *weight, sf_error *error);
 sf_status sf_mapping_invert_fill_f32(sf_mapping mapping, size_t count, const float *x, const float *const *parameters,
                                      const size_t *strides, float *u, sf_error *error);
-sf_status sf_mapping_invert_fill_f64(sf_mapping mapping, size_t count, const double *x,
-                                     const double *const *parameters, const size_t *strides, double *u,
-                                     sf_error *error);
+sf_status sf_mapping_invert_fill_f64(sf_mapping mapping, size_t count, const double *x, const double *const *parameters,
+                                     const size_t *strides, double *u, sf_error *error);
 
 #ifdef __cplusplus
 }

@@ -37,14 +37,14 @@ SF_INLINE void sf_unit_direction(const float v[3], float out[3]) {
  * add up, so that neither small triangles nor those around the origin's foot need another
  * method. */
 typedef struct sf_spherical_triangle {
-    float a[3], b[3];       /* directions to the vertices */
-    float tangent[3];       /* of the arc from a to c, at a; as long as the sine of the arc */
-    float side[3];          /* c x a, on b's side: the plane on which the sub-triangles end */
-    float base[3];          /* a x b, on c's side */
-    float volume;           /* |a . (b x c)| */
-    float edge, corner;     /* 1 + a.b and 1 + a.c */
-    float across;           /* volume over the sine of half the solid angle */
-    float share, rest;      /* of the sphere; 1/2 - share, accurate where that is small */
+    float a[3], b[3];   /* directions to the vertices */
+    float tangent[3];   /* of the arc from a to c, at a; as long as the sine of the arc */
+    float side[3];      /* c x a, on b's side: the plane on which the sub-triangles end */
+    float base[3];      /* a x b, on c's side */
+    float volume;       /* |a . (b x c)| */
+    float edge, corner; /* 1 + a.b and 1 + a.c */
+    float across;       /* volume over the sine of half the solid angle */
+    float share, rest;  /* of the sphere; 1/2 - share, accurate where that is small */
 } sf_spherical_triangle;
 
 /* 1 + cos of an angle, given its sine as a vector: which does not cancel near pi. */
@@ -97,11 +97,13 @@ SF_INLINE float sf_sine_of_lesser(float a, float b) {
 SF_INLINE void sf_spherical_triangle_draw(const sf_spherical_triangle *triangle, float s, float t, float w[3]) {
     const float *a = triangle->a, *b = triangle->b, *tangent = triangle->tangent;
     float sum[3], gap[3], cut = s * triangle->share, left = (1.0f - s) * triangle->share;
-    float sine_cut = sf_sine_of_lesser(cut, triangle->rest + left), sine_left = sf_sine_of_lesser(left, triangle->rest + cut);
+    float sine_cut = sf_sine_of_lesser(cut, triangle->rest + left),
+          sine_left = sf_sine_of_lesser(left, triangle->rest + cut);
     /* Halfway between a and d, as multiples of a and of the tangent; then d at twice the angle. */
     float scale = sine_cut + sine_left, over = 1.0f / (scale > 0.0f ? scale : 1.0f);
     float up = triangle->edge * sine_cut * over, along = triangle->across * (sine_left * over) + triangle->corner * up;
-    float rise = up * up * sf_dot3(tangent, tangent), square = along * along + rise, inverse = 1.0f / (square > 0.0f ? square : 1.0f);
+    float rise = up * up * sf_dot3(tangent, tangent), square = along * along + rise,
+          inverse = 1.0f / (square > 0.0f ? square : 1.0f);
     float turn_a = square > 0.0f ? (along * along - rise) * inverse : 1.0f, turn_t = 2.0f * along * up * inverse;
     for (int k = 0; k < 3; ++k) {
         float d = turn_a * a[k] + turn_t * tangent[k];
@@ -195,7 +197,8 @@ SF_INLINE float sf_strip_share(float x, float y0, float y1, float height, float 
     float q0 = y0 * y0 + near * near, q1 = y1 * y1 + near * near, ax = fabsf(x);
     float far0 = sqrtf(x * x + q0) + ax, far1 = sqrtf(x * x + q1) + ax;
     /* r + x, which for negative x is q / (r - x). */
-    float g0 = x < 0.0f ? q0 / (far0 > 0.0f ? far0 : 1.0f) : far0, g1 = x < 0.0f ? q1 / (far1 > 0.0f ? far1 : 1.0f) : far1;
+    float g0 = x < 0.0f ? q0 / (far0 > 0.0f ? far0 : 1.0f) : far0,
+          g1 = x < 0.0f ? q1 / (far1 > 0.0f ? far1 : 1.0f) : far1;
     return sf_angle_2pi(near * height, g0 * g1 + y0 * y1 + near * near);
 }
 SF_INLINE float sf_clamp_between(float x, float low, float high) {
@@ -255,7 +258,8 @@ SF_INLINE void sf_spherical_rectangle_draw(const sf_spherical_rectangle *r, floa
     float x = sf_spherical_rectangle_sweep(r, s), square = x * x + r->near * r->near;
     float d0 = sqrtf(square + r->y0 * r->y0), d1 = sqrtf(square + r->y1 * r->y1);
     /* 1 - |h| and 1 + |h| at both edges, then 1 - h and 1 + h of the sample: nothing cancels. */
-    float low0 = square / (d0 * (d0 + fabsf(r->y0)) + 0x1p-120f), low1 = square / (d1 * (d1 + fabsf(r->y1)) + 0x1p-120f);
+    float low0 = square / (d0 * (d0 + fabsf(r->y0)) + 0x1p-120f),
+          low1 = square / (d1 * (d1 + fabsf(r->y1)) + 0x1p-120f);
     float less0 = r->y0 > 0.0f ? low0 : 2.0f - low0, less1 = r->y1 > 0.0f ? low1 : 2.0f - low1;
     float more0 = r->y0 > 0.0f ? 2.0f - low0 : low0, more1 = r->y1 > 0.0f ? 2.0f - low1 : low1;
     float less = (1.0f - t) * less0 + t * less1, more = (1.0f - t) * more0 + t * more1;
@@ -265,15 +269,17 @@ SF_INLINE void sf_spherical_rectangle_draw(const sf_spherical_rectangle *r, floa
 }
 SF_INLINE void sf_spherical_rectangle_find(const sf_spherical_rectangle *r, const float w[3], float u[2]) {
     float wx = sf_dot3(w, r->x), wy = sf_dot3(w, r->y), wz = sf_dot3(w, r->z);
-    float x = sf_clamp_between(r->near * wx / (wz > 0.0f ? wz : 0x1p-60f), r->x0, r->x1), square = x * x + r->near * r->near;
-    float h0 = r->y0 / sqrtf(square + r->y0 * r->y0 + 0x1p-100f), h1 = r->y1 / sqrtf(square + r->y1 * r->y1 + 0x1p-100f);
+    float x = sf_clamp_between(r->near * wx / (wz > 0.0f ? wz : 0x1p-60f), r->x0, r->x1),
+          square = x * x + r->near * r->near;
+    float h0 = r->y0 / sqrtf(square + r->y0 * r->y0 + 0x1p-100f),
+          h1 = r->y1 / sqrtf(square + r->y1 * r->y1 + 0x1p-100f);
     float part = sf_rectangle_share(r->x0, x, x - r->x0, r->y0, r->y1, r->y1 - r->y0, r->near);
     u[0] = sf_unit_clamp(part / (r->share > 0.0f ? r->share : 1.0f));
     u[1] = sf_unit_clamp((wy - h0) / (h1 > h0 ? h1 - h0 : 1.0f));
 }
 
-SF_INLINE void sf_spherical_rectangle_sample(float s, float t, const float a[3], const float b[3],
-                                             const float c[3], const float origin[3], float w[3]) {
+SF_INLINE void sf_spherical_rectangle_sample(float s, float t, const float a[3], const float b[3], const float c[3],
+                                             const float origin[3], float w[3]) {
     sf_spherical_rectangle rectangle;
     SF_ASSERT_UNIT(s, t);
     sf_spherical_rectangle_init(&rectangle, a, b, c, origin);
@@ -286,8 +292,8 @@ SF_INLINE float sf_spherical_rectangle_pdf(const float w[3], const float a[3], c
     sf_spherical_rectangle_init(&rectangle, a, b, c, origin);
     return 0.25f / (SF_PI_F * rectangle.share);
 }
-SF_INLINE void sf_spherical_rectangle_invert(const float w[3], const float a[3], const float b[3],
-                                             const float c[3], const float origin[3], float u[2]) {
+SF_INLINE void sf_spherical_rectangle_invert(const float w[3], const float a[3], const float b[3], const float c[3],
+                                             const float origin[3], float u[2]) {
     sf_spherical_rectangle rectangle;
     sf_spherical_rectangle_init(&rectangle, a, b, c, origin);
     sf_spherical_rectangle_find(&rectangle, w, u);

@@ -145,11 +145,10 @@ SF_INLINE float sf_blackman_harris_sample(float s, float radius) {
     return 0.5f + copysignf((1.0f - 2.0f * p) * radius, s - 0.5f);
 }
 /* p of a place; 0 at the rim, negative outside. */
-SF_INLINE float sf_blackman_harris_place(float x, float radius) {
-    return 0.5f - 0.5f * (fabsf(x - 0.5f) / radius);
-}
+SF_INLINE float sf_blackman_harris_place(float x, float radius) { return 0.5f - 0.5f * (fabsf(x - 0.5f) / radius); }
 SF_INLINE float sf_blackman_harris_pdf(float x, float radius) {
-    float p = sf_blackman_harris_place(x, radius), integral, density = sf_blackman_harris(p > 0.0f ? p : 0.0f, &integral);
+    float p = sf_blackman_harris_place(x, radius), integral,
+          density = sf_blackman_harris(p > 0.0f ? p : 0.0f, &integral);
     return p >= -0x1p-22f - 0x1p-24f / radius ? density * (0.5f / 0.35875f) / radius : 0.0f;
 }
 SF_INLINE float sf_blackman_harris_invert(float x, float radius) {

@@ -19,9 +19,7 @@ SF_INLINE void sf_cross3(const float a[3], const float b[3], float out[3]) {
     out[1] = a[2] * b[0] - a[0] * b[2];
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
-SF_INLINE float sf_dot3(const float a[3], const float b[3]) {
-    return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
-}
+SF_INLINE float sf_dot3(const float a[3], const float b[3]) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; }
 
 /* The point a + alpha (b - a) + beta (c - a). */
 SF_INLINE void sf_triangle_point(float alpha, float beta, const float a[3], const float b[3], const float c[3],
@@ -59,8 +57,7 @@ SF_INLINE float sf_triangle_pdf(const float x[3], const float a[3], const float 
     return 2.0f / sqrtf(sf_dot3(n, n));
 }
 /* t is lost at c itself, where all of them meet: 0 there. */
-SF_INLINE void sf_triangle_invert(const float x[3], const float a[3], const float b[3], const float c[3],
-                                  float u[2]) {
+SF_INLINE void sf_triangle_invert(const float x[3], const float a[3], const float b[3], const float c[3], float u[2]) {
     float alpha, beta;
     sf_triangle_coordinates(x, a, b, c, &alpha, &beta);
     float root = 1.0f - beta;
@@ -71,18 +68,17 @@ SF_INLINE void sf_triangle_invert(const float x[3], const float a[3], const floa
 /* Heitz 2019, "A Low-Distortion Map Between Triangle and Square": each half of the square
  * beside the diagonal s = t is sheared onto half of the triangle, and the diagonal becomes the
  * median from a. Continuous; strata stay compact and none is drawn out to a vertex. */
-SF_INLINE void sf_triangle_low_distortion_sample(float s, float t, const float a[3], const float b[3],
-                                                 const float c[3], float out[3]) {
+SF_INLINE void sf_triangle_low_distortion_sample(float s, float t, const float a[3], const float b[3], const float c[3],
+                                                 float out[3]) {
     SF_ASSERT_UNIT(s, t);
     float alpha = t > s ? 0.5f * s : s - 0.5f * t, beta = t > s ? t - 0.5f * s : 0.5f * t;
     sf_triangle_point(alpha, beta, a, b, c, out);
 }
-SF_INLINE float sf_triangle_low_distortion_pdf(const float x[3], const float a[3], const float b[3],
-                                               const float c[3]) {
+SF_INLINE float sf_triangle_low_distortion_pdf(const float x[3], const float a[3], const float b[3], const float c[3]) {
     return sf_triangle_pdf(x, a, b, c);
 }
-SF_INLINE void sf_triangle_low_distortion_invert(const float x[3], const float a[3], const float b[3],
-                                                 const float c[3], float u[2]) {
+SF_INLINE void sf_triangle_low_distortion_invert(const float x[3], const float a[3], const float b[3], const float c[3],
+                                                 float u[2]) {
     float alpha, beta;
     sf_triangle_coordinates(x, a, b, c, &alpha, &beta);
     u[0] = sf_unit_clamp(beta > alpha ? 2.0f * alpha : alpha + beta);

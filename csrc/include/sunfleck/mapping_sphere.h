@@ -56,9 +56,7 @@ SF_INLINE void sf_cosine_hemisphere_sample(float s, float t, float w[3]) {
     SF_ASSERT_UNIT(s, t);
     sf_direction(s, sqrtf(1.0f - t), sqrtf(t), w);
 }
-SF_INLINE float sf_cosine_hemisphere_pdf(const float w[3]) {
-    return w[2] > 0.0f ? w[2] * (1.0f / SF_PI_F) : 0.0f;
-}
+SF_INLINE float sf_cosine_hemisphere_pdf(const float w[3]) { return w[2] > 0.0f ? w[2] * (1.0f / SF_PI_F) : 0.0f; }
 SF_INLINE void sf_cosine_hemisphere_invert(const float w[3], float u[2]) {
     u[0] = sf_angle_2pi(w[1], w[0]);
     u[1] = sf_unit_clamp(w[2] > 0.0f ? w[2] * w[2] : 0.0f);
@@ -73,9 +71,7 @@ SF_INLINE void sf_cosine_hemisphere_concentric_sample(float s, float t, float w[
     w[2] = sqrtf(rest * (2.0f - rest));
 }
 SF_INLINE float sf_cosine_hemisphere_concentric_pdf(const float w[3]) { return sf_cosine_hemisphere_pdf(w); }
-SF_INLINE void sf_cosine_hemisphere_concentric_invert(const float w[3], float u[2]) {
-    sf_disk_concentric_invert(w, u);
-}
+SF_INLINE void sf_cosine_hemisphere_concentric_invert(const float w[3], float u[2]) { sf_disk_concentric_invert(w, u); }
 
 /* ---- cone: the directions within an angle of the pole ---- */
 
@@ -141,8 +137,7 @@ SF_INLINE void sf_frame_from_normal(const float n[3], float tangent[3], float bi
 /* x tangent + y bitangent + z normal. */
 SF_INLINE void sf_frame_to_world(const float tangent[3], const float bitangent[3], const float normal[3],
                                  const float local[3], float world[3]) {
-    for (int k = 0; k < 3; ++k)
-        world[k] = (local[0] * tangent[k] + local[1] * bitangent[k]) + local[2] * normal[k];
+    for (int k = 0; k < 3; ++k) world[k] = (local[0] * tangent[k] + local[1] * bitangent[k]) + local[2] * normal[k];
 }
 
 #ifdef __cplusplus

@@ -22,17 +22,17 @@
 extern "C" {
 #endif
 
-#define SF_SOBOL_MAX_DIMS 21201u  /* Joe & Kuo's table */
-#define SF_HALTON_MAX_DIMS 6542u  /* the primes below 2^16; hammersley has one more */
-#define SF_SZ_MAX_DIMS 65536u     /* the nimbers below 2^16 */
+#define SF_SOBOL_MAX_DIMS 21201u /* Joe & Kuo's table */
+#define SF_HALTON_MAX_DIMS 6542u /* the primes below 2^16; hammersley has one more */
+#define SF_SZ_MAX_DIMS 65536u    /* the nimbers below 2^16 */
 #define SF_ORTHOGONAL_MAX_DIMS 4097u
 #define SF_LATTICE_MAX_DIMS 4391u /* of Kuo's generating vector */
 #define SF_POINTS_MAX_DIMS 65536u /* of the patterns without a table */
 
 typedef enum sf_pattern {
-    SF_PATTERN_UNIFORM = 0, /* centres of a regular grid; needs its total */
-    SF_PATTERN_RANDOM,      /* independent points */
-    SF_PATTERN_JITTERED,    /* a random point in each cell of a grid; needs its total */
+    SF_PATTERN_UNIFORM = 0,   /* centres of a regular grid; needs its total */
+    SF_PATTERN_RANDOM,        /* independent points */
+    SF_PATTERN_JITTERED,      /* a random point in each cell of a grid; needs its total */
     SF_PATTERN_LATIN,         /* latin hypercube: one point in each of n strata of each dimension;
                                  needs its total */
     SF_PATTERN_MULTIJITTERED, /* jittered and latin at once, correlated (Kensler 2013), for each
@@ -40,16 +40,16 @@ typedef enum sf_pattern {
     SF_PATTERN_ORTHOGONAL,    /* latin hypercube on an orthogonal array of strength 2: of n = q^2
                                  points, one in each of q x q cells of every two dimensions (Tang
                                  1993); needs its total */
-    SF_PATTERN_HALTON,      /* radical inverses in the first d primes */
-    SF_PATTERN_HAMMERSLEY,  /* i / n, and halton in the other dimensions; needs its total */
-    SF_PATTERN_SOBOL,       /* Joe & Kuo's direction numbers, in the natural order of the index */
-    SF_PATTERN_SZ,          /* (0, 2)-sequences in base 2 side by side; four dimensions a (0, 4)-sequence
-                               in base 4, sixteen (0, 16) in base 16, … (after Ahmed et al. 2024) */
-    SF_PATTERN_LATTICE,     /* rank-1 lattice in the order of the radical inverse in base 2, Kuo's
-                               generating vector for 2^10 .. 2^20 points (Cools, Kuo & Nuyens
-                               2006); beyond, it gets hardly better */
-    SF_PATTERN_R2,          /* 1/2 + (i + 1) g^(d+1) modulo 1, 1 / g the generalized golden ratio of
-                               the dimensions (Roberts 2018): a point depends on `dims` */
+    SF_PATTERN_HALTON,        /* radical inverses in the first d primes */
+    SF_PATTERN_HAMMERSLEY,    /* i / n, and halton in the other dimensions; needs its total */
+    SF_PATTERN_SOBOL,         /* Joe & Kuo's direction numbers, in the natural order of the index */
+    SF_PATTERN_SZ,            /* (0, 2)-sequences in base 2 side by side; four dimensions a (0, 4)-sequence
+                                 in base 4, sixteen (0, 16) in base 16, … (after Ahmed et al. 2024) */
+    SF_PATTERN_LATTICE,       /* rank-1 lattice in the order of the radical inverse in base 2, Kuo's
+                                 generating vector for 2^10 .. 2^20 points (Cools, Kuo & Nuyens
+                                 2006); beyond, it gets hardly better */
+    SF_PATTERN_R2,            /* 1/2 + (i + 1) g^(d+1) modulo 1, 1 / g the generalized golden ratio of
+                                 the dimensions (Roberts 2018): a point depends on `dims` */
     SF_PATTERN_COUNT
 } sf_pattern;
 
@@ -177,7 +177,7 @@ float sf_multijittered_sample(uint64_t index, uint32_t dimension, uint64_t seed,
 /* levels a prime or a power of two, 2 .. 4096; index < levels^2; dimension <= levels. */
 float sf_orthogonal_sample(uint64_t index, uint32_t dimension, uint64_t seed, uint32_t levels);
 
-float sf_halton_sample(uint64_t index, uint32_t dimension, uint64_t seed); /* dimension < SF_HALTON_MAX_DIMS */
+float sf_halton_sample(uint64_t index, uint32_t dimension, uint64_t seed);      /* dimension < SF_HALTON_MAX_DIMS */
 float sf_halton_owen_sample(uint64_t index, uint32_t dimension, uint64_t seed); /* the fill with that scramble */
 
 /* total 1 .. 2^32, index < total, dimension <= SF_HALTON_MAX_DIMS. */
@@ -195,8 +195,8 @@ void sf_r2_increments(uint32_t dims, uint64_t *increments);
 float sf_r2_sample(uint64_t index, uint64_t increment);
 float sf_r2_shifted_sample(uint64_t index, uint32_t dimension, uint64_t seed, uint64_t increment);
 
-float sf_sobol_sample(uint32_t index, uint32_t dimension, uint64_t seed);  /* dimension < SF_SOBOL_MAX_DIMS */
-float sf_sz_sample(uint32_t index, uint32_t dimension, uint64_t seed);     /* dimension < SF_SZ_MAX_DIMS */
+float sf_sobol_sample(uint32_t index, uint32_t dimension, uint64_t seed); /* dimension < SF_SOBOL_MAX_DIMS */
+float sf_sz_sample(uint32_t index, uint32_t dimension, uint64_t seed);    /* dimension < SF_SZ_MAX_DIMS */
 
 /* The same with a scramble (default, none, shift, lms, owen, nested) and a pad (0, 2, 4) of one's
  * own: any dimension where pad is not 0, which then takes the default, owen or nested. */

@@ -15,10 +15,10 @@
 extern "C" {
 #endif
 
-#define SF_MAX_IMAGE_SIZE 65536u        /* pixels a side */
-#define SF_MAX_SPP (UINT32_C(1) << 31)  /* samples a pixel */
+#define SF_MAX_IMAGE_SIZE 65536u       /* pixels a side */
+#define SF_MAX_SPP (UINT32_C(1) << 31) /* samples a pixel */
 #define SF_MAX_THREADS 1024u
-#define SF_CELL_SIZE 8u                 /* pixels a side of the cells that rays are packed in */
+#define SF_CELL_SIZE 8u /* pixels a side of the cells that rays are packed in */
 
 /* The density over the image plane that a pixel's samples are drawn from (filter importance
  * sampling: every sample has weight 1, so a constant image stays constant). */
@@ -57,13 +57,13 @@ typedef enum sf_seed_policy {
 
 /* Why a pixel stopped. */
 typedef enum sf_stop_reason {
-    SF_STOP_FIXED = 0,    /* the fixed count asked for was taken */
-    SF_STOP_MET,          /* half-width within the tolerance */
-    SF_STOP_MAX_SAMPLES,  /* max_spp reached first */
-    SF_STOP_OUT_OF_TIME,  /* the time limit came first */
-    SF_STOP_SUSPICIOUS,   /* samples that were not finite were dropped */
-    SF_STOP_INTERRUPTED,  /* the caller asked to stop */
-    SF_STOP_MASKED,       /* the mask leaves the pixel out */
+    SF_STOP_FIXED = 0,   /* the fixed count asked for was taken */
+    SF_STOP_MET,         /* half-width within the tolerance */
+    SF_STOP_MAX_SAMPLES, /* max_spp reached first */
+    SF_STOP_OUT_OF_TIME, /* the time limit came first */
+    SF_STOP_SUSPICIOUS,  /* samples that were not finite were dropped */
+    SF_STOP_INTERRUPTED, /* the caller asked to stop */
+    SF_STOP_MASKED,      /* the mask leaves the pixel out */
     SF_STOP_REASON_COUNT
 } sf_stop_reason;
 
@@ -97,16 +97,16 @@ const char *sf_aov_name(sf_aov aov); /* "albedo", …; NULL beyond the last */
 
 /* How far a render is: given to the progress callback. */
 typedef struct sf_progress {
-    uint32_t round;           /* rounds finished */
-    uint64_t samples;         /* paths traced so far */
-    uint64_t pixels;          /* pixels of the crop that the mask leaves */
-    uint64_t pixels_done;     /* of these, stopped */
+    uint32_t round;            /* rounds finished */
+    uint64_t samples;          /* paths traced so far */
+    uint64_t pixels;           /* pixels of the crop that the mask leaves */
+    uint64_t pixels_done;      /* of these, stopped */
     uint64_t expected_samples; /* samples where the count is fixed, else 0 */
-    double seconds;           /* since the start */
-    double time_limit;        /* the seconds option, 0 where there is none */
-    int round_finished;       /* 1 at a round's end, 0 for the calls in between */
-    uint64_t pixels_met;      /* of those done, stopped because they met the tolerance */
-    double tolerance;         /* in linear radiance; 0 until it is known, or where none was asked */
+    double seconds;            /* since the start */
+    double time_limit;         /* the seconds option, 0 where there is none */
+    int round_finished;        /* 1 at a round's end, 0 for the calls in between */
+    uint64_t pixels_met;       /* of those done, stopped because they met the tolerance */
+    double tolerance;          /* in linear radiance; 0 until it is known, or where none was asked */
 } sf_progress;
 
 /* Called from the thread that called sf_render, at every round's end and at least every 50 ms;
@@ -118,56 +118,56 @@ typedef int (*sf_progress_fn)(const sf_progress *progress, void *user);
 typedef void (*sf_notice_fn)(const char *message, void *user);
 
 typedef struct sf_render_options {
-    uint32_t width, height;  /* of the full frame, 1 .. SF_MAX_IMAGE_SIZE; default 512 */
-    uint32_t crop[4];        /* x0, y0, x1, y1, half open, in pixels of the full frame; all 0: the
-                                whole frame. Cells that the crop touches are traced whole, so that
-                                its pixels are the full frame's, bit for bit, at fixed spp (and
-                                adaptively with an absolute tolerance) */
-    uint32_t spp;            /* fixed samples a pixel, 0 .. SF_MAX_SPP; default 0: adaptive */
-    uint32_t start;          /* index of every pixel's first sample, with spp only; start + spp at
-                                most SF_MAX_SPP; default 0. Renders of [0, a) and [a, b) hold the
-                                samples of one of [0, b), where the pattern has no total to know */
-    double relative_tolerance; /* of the level: the mean over the frame (the crop) of (R+G+B)/3
-                                after min_spp; >= 0; default 0 */
-    double absolute_tolerance; /* linear radiance, >= 0; default 0. A pixel is done when its
-                                half-width is at most max(absolute, relative * level). With spp,
-                                seconds and both tolerances 0, the relative one is 0.01 */
-    double confidence;       /* of the half-widths, in (0, 1); default 0.95 */
-    uint32_t min_spp;        /* before any decision, 2 .. max_spp; default 32 */
-    uint32_t max_spp;        /* 2 .. SF_MAX_SPP; default 4096 */
-    uint64_t samples;        /* budget of samples of the traced region, without spp and tolerances:
-                                they go where they lower the largest half-width most; 0: none
-                                (default); at least one a pixel */
-    double seconds;          /* time limit, > 0; 0: none (default). Alone it is a budget, spent as
-                                `samples` is */
-    sf_pattern pattern;      /* uniform, random, jittered, halton, sobol (default) */
+    uint32_t width, height;       /* of the full frame, 1 .. SF_MAX_IMAGE_SIZE; default 512 */
+    uint32_t crop[4];             /* x0, y0, x1, y1, half open, in pixels of the full frame; all 0: the
+                                     whole frame. Cells that the crop touches are traced whole, so that
+                                     its pixels are the full frame's, bit for bit, at fixed spp (and
+                                     adaptively with an absolute tolerance) */
+    uint32_t spp;                 /* fixed samples a pixel, 0 .. SF_MAX_SPP; default 0: adaptive */
+    uint32_t start;               /* index of every pixel's first sample, with spp only; start + spp at
+                                     most SF_MAX_SPP; default 0. Renders of [0, a) and [a, b) hold the
+                                     samples of one of [0, b), where the pattern has no total to know */
+    double relative_tolerance;    /* of the level: the mean over the frame (the crop) of (R+G+B)/3
+                                   after min_spp; >= 0; default 0 */
+    double absolute_tolerance;    /* linear radiance, >= 0; default 0. A pixel is done when its
+                                   half-width is at most max(absolute, relative * level). With spp,
+                                   seconds and both tolerances 0, the relative one is 0.01 */
+    double confidence;            /* of the half-widths, in (0, 1); default 0.95 */
+    uint32_t min_spp;             /* before any decision, 2 .. max_spp; default 32 */
+    uint32_t max_spp;             /* 2 .. SF_MAX_SPP; default 4096 */
+    uint64_t samples;             /* budget of samples of the traced region, without spp and tolerances:
+                                     they go where they lower the largest half-width most; 0: none
+                                     (default); at least one a pixel */
+    double seconds;               /* time limit, > 0; 0: none (default). Alone it is a budget, spent as
+                                     `samples` is */
+    sf_pattern pattern;           /* uniform, random, jittered, halton, sobol (default) */
     sf_pixel_filter pixel_filter; /* default box */
-    sf_stop_rule stop;       /* default dyadic */
-    sf_seed_policy seeds;    /* default pixel */
-    uint64_t seed;           /* default 0 */
-    uint32_t threads;        /* 1 .. SF_MAX_THREADS; 0: one for each processor (default) */
-    uint32_t tile_size;      /* pixels a side of what a thread takes at a time, a multiple of 8,
-                                8 .. 1024; default 16. Changes no bit of the film */
-    uint32_t aovs;           /* bit k asks for sf_aov k: 1u << SF_AOV_DEPTH | …; default 0. A render
-                                that asks for none neither keeps nor computes any */
-    const uint8_t *mask;     /* which pixels to render, those not 0: height rows of width bytes, in
-                                pixels of the full frame whatever the crop; NULL: all (default).
-                                Read before the first round only. The others have no samples,
-                                half-width infinity and stop reason masked. Cells that the mask
-                                touches are traced whole, as a crop's are, so that its pixels are
-                                the full frame's, bit for bit, at fixed spp (and adaptively with an
-                                absolute tolerance and a rule that looks at each pixel by itself;
-                                the level of a relative one is of the mask's pixels). A mask of
-                                scattered pixels may cost up to 64 times as many as it has. One
-                                that leaves no pixel of the crop is refused */
-    size_t mask_stride;      /* bytes from row to row, >= width; 0: width (default) */
-    sf_progress_fn progress; /* default NULL */
+    sf_stop_rule stop;            /* default dyadic */
+    sf_seed_policy seeds;         /* default pixel */
+    uint64_t seed;                /* default 0 */
+    uint32_t threads;             /* 1 .. SF_MAX_THREADS; 0: one for each processor (default) */
+    uint32_t tile_size;           /* pixels a side of what a thread takes at a time, a multiple of 8,
+                                     8 .. 1024; default 16. Changes no bit of the film */
+    uint32_t aovs;                /* bit k asks for sf_aov k: 1u << SF_AOV_DEPTH | …; default 0. A render
+                                     that asks for none neither keeps nor computes any */
+    const uint8_t *mask;          /* which pixels to render, those not 0: height rows of width bytes, in
+                                     pixels of the full frame whatever the crop; NULL: all (default).
+                                     Read before the first round only. The others have no samples,
+                                     half-width infinity and stop reason masked. Cells that the mask
+                                     touches are traced whole, as a crop's are, so that its pixels are
+                                     the full frame's, bit for bit, at fixed spp (and adaptively with an
+                                     absolute tolerance and a rule that looks at each pixel by itself;
+                                     the level of a relative one is of the mask's pixels). A mask of
+                                     scattered pixels may cost up to 64 times as many as it has. One
+                                     that leaves no pixel of the crop is refused */
+    size_t mask_stride;           /* bytes from row to row, >= width; 0: width (default) */
+    sf_progress_fn progress;      /* default NULL */
     void *progress_user;
     const char *checkpoint_path; /* default NULL: none. Where the file exists the render goes on from
                                 it, and is refused where it was made for another picture; see
                                 sf_render. Needs seeds = pixel */
-    double checkpoint_seconds; /* between writes while the render runs, 0 .. 1e9; default 30 */
-    sf_notice_fn notice;     /* default NULL */
+    double checkpoint_seconds;   /* between writes while the render runs, 0 .. 1e9; default 30 */
+    sf_notice_fn notice;         /* default NULL */
     void *notice_user;
 } sf_render_options;
 
@@ -220,12 +220,12 @@ void sf_film_destroy(sf_film *film);
 typedef enum sf_channel_type { SF_CHANNEL_FLOAT32 = 0, SF_CHANNEL_UINT32, SF_CHANNEL_UINT8 } sf_channel_type;
 
 typedef struct sf_channel {
-    const char *name;     /* R G B A samples half_width stop_reason, in this order, then those of
-                             the AOVs asked for, in the order of sf_aov */
+    const char *name; /* R G B A samples half_width stop_reason, in this order, then those of
+                         the AOVs asked for, in the order of sf_aov */
     sf_channel_type type;
-    const void *data;     /* of pixel (0, 0); lives as long as the film */
-    size_t pixel_stride;  /* bytes */
-    size_t row_stride;    /* bytes */
+    const void *data;    /* of pixel (0, 0); lives as long as the film */
+    size_t pixel_stride; /* bytes */
+    size_t row_stride;   /* bytes */
 } sf_channel;
 
 /* The film's own size: the crop's. */
@@ -261,10 +261,10 @@ typedef struct sf_film_summary {
     double level;                           /* mean of (R+G+B)/3 that a relative tolerance refers to */
     double tolerance;                       /* in linear radiance; 0 where none was asked */
     double confidence;
-    double worst_half_width;                /* the largest, and where */
-    uint32_t worst_x, worst_y;              /* in pixels of the full frame */
+    double worst_half_width;   /* the largest, and where */
+    uint32_t worst_x, worst_y; /* in pixels of the full frame */
     double mean_half_width;
-    double seconds;                         /* of the render call */
+    double seconds; /* of the render call */
     uint32_t threads, rounds;
 } sf_film_summary;
 sf_film_summary sf_film_summarize(const sf_film *film);

@@ -53,7 +53,7 @@ typedef enum sf_rng_kind {
  * the method's own struct (pcg32: 16 bytes). */
 typedef struct sf_rng {
     sf_rng_kind kind;
-    uint32_t pending;     /* the high half of a 64-bit draw whose low half was given out */
+    uint32_t pending; /* the high half of a 64-bit draw whose low half was given out */
     int has_pending;
     uint64_t seed, stream; /* as given to sf_rng_init */
     uint64_t spawned;      /* children so far */

@@ -69,7 +69,8 @@ static inline void sf_philox4x32_block(const uint32_t counter[4], const uint32_t
 static inline uint32_t sf_philox4x32_next(sf_philox4x32 *g) {
     if (g->used >= 4) {
         sf_philox4x32_block(g->counter, g->key, g->block);
-        for (int i = 0; i < 4 && ++g->counter[i] == 0; ++i) {}
+        for (int i = 0; i < 4 && ++g->counter[i] == 0; ++i) {
+        }
         g->used = 0;
     }
     return g->block[g->used++];
@@ -105,7 +106,8 @@ static inline void sf_philox4x64_block(const uint64_t counter[4], const uint64_t
 static inline uint64_t sf_philox4x64_next(sf_philox4x64 *g) {
     if (g->used >= 4) {
         sf_philox4x64_block(g->counter, g->key, g->block);
-        for (int i = 0; i < 4 && ++g->counter[i] == 0; ++i) {}
+        for (int i = 0; i < 4 && ++g->counter[i] == 0; ++i) {
+        }
         g->used = 0;
     }
     return g->block[g->used++];

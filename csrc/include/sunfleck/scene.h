@@ -135,7 +135,7 @@ const char *sf_dimension_use_name(sf_dimension_use use);
 typedef struct sf_plan {
     uint32_t stages; /* bit (1 << sf_stage) of each stage that runs */
     uint32_t max_bounces;
-    uint32_t dimensions_per_path;  /* sum of `count` below */
+    uint32_t dimensions_per_path; /* sum of `count` below */
     uint32_t dimension_group_count;
     sf_plan_dimensions dimensions[SF_PLAN_MAX_GROUPS];
     uint32_t camera_rays;  /* per path: 1 */
