@@ -3,9 +3,14 @@
 
 """What the tests of several modules start from."""
 
+import signal
+
 import pytest
 
 import sunfleck as sf
+
+# Where the tests run in the background the shell has them ignore Ctrl-C, and what they start inherits that.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")
