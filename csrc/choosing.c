@@ -22,60 +22,69 @@ void sf_rounds_list_tiles(sf_rounds *r) {
         if (tile_has(r, tile, r->active)) r->tiles[r->tile_count++] = tile;
 }
 
-/* The least count and the largest half-width among a tile's open pixels beyond the target. */
-static void survey_tile(void *user, unsigned worker, size_t tile) {
-    (void)worker;
-    sf_rounds *r = user;
-    sf_cell_range range = sf_rounds_tile(r, (uint32_t)tile);
-    uint32_t least = UINT32_MAX;
-    double worst = 0;
-    for (uint32_t y = range.y0; y < range.y1; ++y)
-        for (uint32_t x = range.x0; x < range.x1; ++x) {
-            uint32_t cell = y * r->cell_columns + x;
-            for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m) {
-                if (!(r->open[cell] >> m & 1u)) continue;
-                const sf_film_pixel *pixel = sf_rounds_pixel(r, cell, m);
-                double width = (double)pixel->half_width;
-                worst = width > worst ? width : worst;
-                if (width > r->target && sf_film_taken(pixel) < least) least = (uint32_t)sf_film_taken(pixel);
-            }
-        }
-    r->least[tile] = least;
-    r->worst[tile] = worst;
+static void survey_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
+    for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m) {
+        if (!(r->open[cell] >> m & 1u)) continue;
+        const sf_film_pixel *pixel = sf_rounds_pixel(r, cell, m);
+        double width = (double)pixel->half_width;
+        worker->worst = width > worker->worst ? width : worker->worst;
+        if (width > r->target && sf_film_taken(pixel) < worker->least) worker->least = (uint32_t)sf_film_taken(pixel);
+    }
 }
 
-/* Activates a tile's open pixels that have `from` samples and are beyond the target. */
-static void choose_tile(void *user, unsigned worker, size_t tile) {
-    (void)worker;
+/* Activates a cell's open pixels that have `from` samples and are beyond the target. */
+static void choose_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
+    for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m) {
+        if (!(r->open[cell] >> m & 1u)) continue;
+        const sf_film_pixel *pixel = sf_rounds_pixel(r, cell, m);
+        if (sf_film_taken(pixel) != r->from || !((double)pixel->half_width > r->target)) continue;
+        r->active[cell] |= UINT64_C(1) << m;
+        ++worker->chosen;
+    }
+}
+
+static void survey_tile(void *user, unsigned worker, size_t tile) {
     sf_rounds *r = user;
-    sf_cell_range range = sf_rounds_tile(r, (uint32_t)tile);
-    r->chosen[tile] = 0;
-    for (uint32_t y = range.y0; y < range.y1; ++y)
-        for (uint32_t x = range.x0; x < range.x1; ++x) {
-            uint32_t cell = y * r->cell_columns + x;
-            r->active[cell] = 0;
-            for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m) {
-                if (!(r->open[cell] >> m & 1u)) continue;
-                const sf_film_pixel *pixel = sf_rounds_pixel(r, cell, m);
-                if (sf_film_taken(pixel) != r->from || !((double)pixel->half_width > r->target)) continue;
-                r->active[cell] |= UINT64_C(1) << m;
-                ++r->chosen[tile];
-            }
-        }
+    sf_rounds_each_cell(r, worker, (uint32_t)tile, r->open, survey_cell);
+}
+
+static void choose_tile(void *user, unsigned worker, size_t tile) {
+    sf_rounds *r = user;
+    sf_rounds_each_cell(r, worker, (uint32_t)tile, r->open, choose_cell);
+}
+
+static size_t all_tiles(const sf_rounds *r) { return (size_t)r->tile_columns * r->tile_rows; }
+
+/* The least count among the open pixels beyond the target, UINT32_MAX where there is none, and the
+ * largest half-width of all that are open. Neither depends on which thread saw which pixel. */
+static uint32_t survey(sf_rounds *r, double *worst) {
+    uint32_t least = UINT32_MAX;
+    *worst = 0;
+    for (uint32_t i = 0; i < r->options.threads; ++i) {
+        r->workers[i].least = UINT32_MAX;
+        r->workers[i].worst = 0;
+    }
+    sf_pool_run(r->pool, all_tiles(r), survey_tile, sf_rounds_wake, r);
+    for (uint32_t i = 0; i < r->options.threads; ++i) {
+        least = r->workers[i].least < least ? r->workers[i].least : least;
+        *worst = fmax(*worst, r->workers[i].worst);
+    }
+    return least;
 }
 
 static uint64_t choose_beyond(sf_rounds *r, double target) {
-    size_t tiles = (size_t)r->tile_columns * r->tile_rows;
     uint64_t count = 0;
     r->target = target;
-    sf_pool_run(r->pool, tiles, choose_tile, sf_rounds_wake, r);
-    for (size_t tile = 0; tile < tiles; ++tile) count += r->chosen[tile];
+    memset(r->active, 0, sf_rounds_cell_count(r) * sizeof *r->active);
+    for (uint32_t i = 0; i < r->options.threads; ++i) r->workers[i].chosen = 0;
+    sf_pool_run(r->pool, all_tiles(r), choose_tile, sf_rounds_wake, r);
+    for (uint32_t i = 0; i < r->options.threads; ++i) count += r->workers[i].chosen;
     return count;
 }
 
 /* Keeps, of the chosen pixels, as many as a budget of samples still pays for: those with the
- * largest half-widths. False: of none. */
-static bool keep_within_samples(sf_rounds *r, uint64_t count) {
+ * largest half-widths, `worst` being the largest of all. False: of none. */
+static bool keep_within_samples(sf_rounds *r, uint64_t count, double worst) {
     if (!r->options.samples) return true;
     uint64_t left = r->options.samples - sf_rounds_samples(r);
     uint32_t step = r->look - r->from;
@@ -84,8 +93,7 @@ static bool keep_within_samples(sf_rounds *r, uint64_t count) {
         return true;
     }
     if (count <= left / step) return true;
-    double low = r->target, high = 0;
-    for (size_t t = 0; t < (size_t)r->tile_columns * r->tile_rows; ++t) high = fmax(high, r->worst[t]);
+    double low = r->target, high = worst;
     for (int halving = 0; halving < 40; ++halving) {
         double middle = low + (high - low) / 2;
         if (choose_beyond(r, middle) > left / step)
@@ -98,19 +106,13 @@ static bool keep_within_samples(sf_rounds *r, uint64_t count) {
 
 /* Chooses the pixels of the next lap of a budget. */
 static bool choose_by_budget(sf_rounds *r) {
-    size_t tiles = (size_t)r->tile_columns * r->tile_rows;
     for (;;) {
-        uint32_t least = UINT32_MAX;
-        double worst = 0;
-        sf_pool_run(r->pool, tiles, survey_tile, sf_rounds_wake, r);
-        for (size_t tile = 0; tile < tiles; ++tile) {
-            least = r->least[tile] < least ? r->least[tile] : least;
-            worst = fmax(worst, r->worst[tile]);
-        }
+        double worst;
+        uint32_t least = survey(r, &worst);
         if (least < UINT32_MAX) {
             r->from = least;
             r->look = sf_stop_next_look(&r->options, r->from);
-            return keep_within_samples(r, choose_beyond(r, r->target));
+            return keep_within_samples(r, choose_beyond(r, r->target), worst);
         }
         if (!(worst > 0)) return false;
         r->target = fmin(r->target, worst) * 0.7; /* half the variance, nearly */
@@ -123,13 +125,14 @@ bool sf_rounds_begin_lap(sf_rounds *r) {
     if (budget) {
         if (!choose_by_budget(r)) return false;
     } else {
-        r->from = r->to;
-        r->look = sf_stop_next_look(&r->options, r->from);
         memcpy(r->active, r->open, sf_rounds_cell_count(r) * sizeof *r->active);
+        r->from = r->to;
     }
-    r->to = r->from;
-    r->lap = sf_stop_lap(&r->options, r->look);
     sf_rounds_list_tiles(r);
     r->in_lap = r->tile_count > 0;
-    return r->in_lap;
+    if (!r->in_lap) return false; /* after the last sample there is no look */
+    if (!budget) r->look = sf_stop_next_look(&r->options, r->from);
+    r->to = r->from;
+    r->lap = sf_stop_lap(&r->options, r->look);
+    return true;
 }

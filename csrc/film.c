@@ -152,8 +152,7 @@ void sf_film_sum_row(sf_film *film, uint32_t y) {
     double sum = 0;
     for (uint32_t x = 0; x < film->crop_width; ++x) {
         if (!sf_film_counts(film, x, y)) continue;
-        const double *mean = pixels[x].moments.mean;
-        sum += (mean[0] + mean[1] + mean[2]) / 3;
+        sum += sf_film_level_of(&pixels[x].moments);
     }
     film->rows[y].level = sum;
 }
@@ -178,7 +177,7 @@ static void resolve_untouched(sf_film *film, const sf_film_pixel *pixel, size_t 
 }
 
 static void resolve_pixel(sf_film *film, const sf_film_pixel *pixel, size_t i) {
-    if (pixel->moments.count + pixel->moments.nonfinite == 0) {
+    if (sf_film_taken(pixel) == 0) {
         resolve_untouched(film, pixel, i);
         return;
     }
@@ -201,7 +200,7 @@ void sf_film_resolve_row(sf_film *film, uint32_t y) {
             continue;
         }
         resolve_pixel(film, pixel, i);
-        row.samples += pixel->moments.count + pixel->moments.nonfinite;
+        row.samples += sf_film_taken(pixel);
         row.nonfinite += pixel->moments.nonfinite;
         ++row.reasons[film->reason[i]];
         row.half_width += (double)film->half_width[i];

@@ -14,11 +14,13 @@ typedef struct sf_block_statistics {
     uint32_t hits;             /* finite samples whose camera ray hit a surface */
 } sf_block_statistics;
 
+#define SF_DYADIC_LEVELS 4
+
 /* What the rule "dyadic" keeps of a pixel; see stopping.h. Level 0 is the coarsest. */
 typedef struct sf_dyadic {
-    double unit;       /* sum over the blocks of the unit at work */
-    double pending[4]; /* means of left halves that wait for their right ones */
-    float squares[4];  /* sums of ((A - B) / 2)^2 over the pairs of a level */
+    double unit;                      /* sum over the blocks of the unit at work */
+    double pending[SF_DYADIC_LEVELS]; /* means of left halves that wait for their right ones */
+    float squares[SF_DYADIC_LEVELS];  /* sums of ((A - B) / 2)^2 over the pairs of a level */
 } sf_dyadic;
 
 #define SF_REPLICATES 8 /* of the rule "replicates" */
@@ -36,6 +38,16 @@ typedef struct sf_film_pixel {
     uint8_t look;   /* that was at 16 * 2^look samples; 0: none yet */
     uint8_t reason; /* sf_stop_reason, once it has stopped */
 } sf_film_pixel;
+
+/* How many samples the pixel took, those that were not finite too. */
+static inline uint64_t sf_film_taken(const sf_film_pixel *pixel) {
+    return pixel->moments.count + pixel->moments.nonfinite;
+}
+
+/* (R+G+B)/3 of a mean colour: what errors and levels are of. */
+static inline double sf_film_level_of(const sf_vector_moments *moments) {
+    return (moments->mean[0] + moments->mean[1] + moments->mean[2]) / 3;
+}
 
 /* Pixels of a cell are numbered in Morton order: the even bits of m are x, the odd bits y, so that
  * 16 in a row are a 4 x 4 square. */

@@ -165,7 +165,7 @@ static sf_status merge_pixels(sf_film *film, const sf_film *const *films, size_t
                 return sf_fail(error, SF_STATUS_INVALID_VALUE,
                                "pixel (%u, %u) is in none of the films; their crops must fill a rectangle", frame_x,
                                frame_y);
-            if (pixel->moments.count + pixel->moments.nonfinite > UINT32_MAX)
+            if (sf_film_taken(pixel) > UINT32_MAX)
                 return sf_fail(error, SF_STATUS_INVALID_VALUE, "pixel (%u, %u) would have more than %u samples",
                                frame_x, frame_y, UINT32_MAX);
             bool met = tolerance > 0 && (double)pixel->half_width <= tolerance;

@@ -53,11 +53,8 @@ static sf_status lay_out_cells(sf_rounds *r, sf_error *error) {
     r->open = malloc(cells * sizeof *r->open);
     r->active = malloc(cells * sizeof *r->active);
     r->tiles = malloc(tiles * sizeof *r->tiles);
-    r->least = malloc(tiles * sizeof *r->least);
-    r->worst = malloc(tiles * sizeof *r->worst);
-    r->chosen = malloc(tiles * sizeof *r->chosen);
-    if (!r->open || !r->active || !r->tiles || !r->least || !r->worst || !r->chosen)
-        return sf_fail_memory(error, "the lists of cells and tiles", cells * 16 + tiles * 24);
+    if (!r->open || !r->active || !r->tiles)
+        return sf_fail_memory(error, "the lists of cells and tiles", cells * 16 + tiles * 4);
     memset(r->active, 0, cells * sizeof *r->active);
     open_all(r);
     return SF_STATUS_OK;
@@ -87,11 +84,11 @@ static sf_status prepare(sf_rounds *r, sf_error *error) {
     if (!status) status = lay_out_cells(r, error);
     if (!status) status = hire_workers(r, error);
     if (status) return status;
-    uint64_t traced = sf_rounds_count(r, r->open);
-    if (o->samples && o->samples < traced)
+    r->region = sf_rounds_count(r, r->open);
+    if (o->samples && o->samples < r->region)
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
                        "samples is %" PRIu64 "; at least one for each of %" PRIu64 " pixels is allowed", o->samples,
-                       traced);
+                       r->region);
     r->context.camera = sf_camera_frame_of(&scene->camera, o->width, o->height);
     r->context.filter = o->pixel_filter;
     r->context.seeds = o->seeds;
@@ -99,9 +96,8 @@ static sf_status prepare(sf_rounds *r, sf_error *error) {
     r->z = r->film->factor = sf_stop_factor(o);
     r->deadline = o->seconds > 0 ? r->start + o->seconds : 0;
     r->progress.pixels = r->film->counted;
-    r->progress.expected_samples = o->spp * sf_rounds_count(r, r->open);
+    r->progress.expected_samples = o->spp * r->region;
     r->progress.time_limit = o->seconds;
-    r->region = sf_rounds_count(r, r->open);
     r->from = r->to = o->start;
     r->film->summary.tolerance = -1;
     r->target = -1;
@@ -199,9 +195,6 @@ sf_status sf_render(const sf_scene *scene, const sf_render_options *options, sf_
     free(r->open);
     free(r->active);
     free(r->tiles);
-    free(r->least);
-    free(r->worst);
-    free(r->chosen);
     if (status)
         sf_film_destroy(r->film);
     else

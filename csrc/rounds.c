@@ -123,13 +123,6 @@ static bool decide_pixel(const sf_rounds *r, uint32_t x, uint32_t y, size_t stat
     return true;
 }
 
-static void decide_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
-    (void)worker;
-    for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m)
-        if (r->active[cell] >> m & 1u && decide_pixel(r, sf_rounds_x(r, cell, m), sf_rounds_y(r, cell, m), r->sampled))
-            r->open[cell] &= ~(UINT64_C(1) << m);
-}
-
 /* Whether the pixel is of the picture, not of the margin that was traced with it. */
 static bool counts(const sf_film *film, const sf_film_pixel *pixel) {
     uint32_t i = (uint32_t)(pixel - film->pixels);
@@ -137,14 +130,14 @@ static bool counts(const sf_film *film, const sf_film_pixel *pixel) {
     return x < film->crop_width && y < film->crop_height && sf_film_counts(film, x, y);
 }
 
-/* Decides, and counts the pixels of the picture that are done. */
-static void settle_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
-    uint64_t before = r->active[cell];
-    decide_cell(r, worker, cell);
-    uint64_t done = before & ~r->open[cell];
-    for (uint32_t m = 0; done; ++m, done >>= 1) {
+/* Closes the pixels that are done, and counts those of the picture. */
+static void decide_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
+    for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m) {
+        if (!(r->active[cell] >> m & 1u)) continue;
+        if (!decide_pixel(r, sf_rounds_x(r, cell, m), sf_rounds_y(r, cell, m), r->sampled)) continue;
+        r->open[cell] &= ~(UINT64_C(1) << m);
         const sf_film_pixel *pixel = sf_rounds_pixel(r, cell, m);
-        if (!(done & 1u) || !counts(r->film, pixel)) continue;
+        if (!counts(r->film, pixel)) continue;
         ++worker->done;
         worker->met += pixel->reason == SF_STOP_MET;
     }
@@ -152,7 +145,7 @@ static void settle_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
 
 static void decide_tile(void *user, unsigned worker, size_t item) {
     sf_rounds *r = user;
-    sf_rounds_each_cell(r, worker, r->tiles[item], r->active, settle_cell);
+    sf_rounds_each_cell(r, worker, r->tiles[item], r->active, decide_cell);
 }
 
 static void sum_row(void *user, unsigned worker, size_t item) {
@@ -196,9 +189,7 @@ static void decide(sf_rounds *r) {
 static uint32_t round_end(const sf_rounds *r) {
     uint32_t end = r->look < sf_rounds_most(r) ? r->look : sf_rounds_most(r);
     if (r->options.seconds == 0) return end;
-    uint32_t step = r->from / 4 / SF_LANES * SF_LANES;
-    step = step < SF_LANES ? SF_LANES : step > 256 ? 256 : step;
-    uint32_t target = r->from / SF_LANES * SF_LANES + step;
+    uint32_t target = sf_stop_quarter_more(r->from);
     return target < end ? target : end;
 }
 

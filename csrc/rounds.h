@@ -29,7 +29,10 @@ enum { SF_RUNNING = 0, SF_OUT_OF_TIME, SF_INTERRUPTED, SF_SPENT, SF_PAUSED };
 typedef struct sf_rounds_worker {
     SF_ALIGNED(sf_atomic_size) samples; /* traced so far */
     uint64_t done, met;                 /* pixels of the picture, by its decisions */
-    sf_rng stream;                      /* seeds = thread, shared */
+    double worst;                       /* of the pixels it surveyed; see choosing.c */
+    uint32_t least;
+    uint64_t chosen;
+    sf_rng stream; /* seeds = thread, shared */
     sf_batch batch;
 } sf_rounds_worker;
 
@@ -55,9 +58,6 @@ typedef struct sf_rounds {
     uint32_t look;     /* where the lap ends, unless the render does */
     sf_lap lap;
     double target; /* of a budget: half-widths beyond it are to be lowered */
-    double *worst; /* by tile: scratch of choosing pixels */
-    uint32_t *least;
-    size_t *chosen;
     bool level_fixed;
     double z; /* standard errors in a half-width */
     double start, deadline;
@@ -86,10 +86,6 @@ static inline uint32_t sf_rounds_y(const sf_rounds *r, uint32_t cell, uint32_t m
 }
 static inline sf_film_pixel *sf_rounds_pixel(const sf_rounds *r, uint32_t cell, uint32_t m) {
     return r->film->pixels + (size_t)sf_rounds_y(r, cell, m) * r->film->width + sf_rounds_x(r, cell, m);
-}
-
-static inline uint64_t sf_film_taken(const sf_film_pixel *pixel) {
-    return pixel->moments.count + pixel->moments.nonfinite;
 }
 
 /* The most samples that a pixel may take. */

@@ -13,8 +13,7 @@ static void add_block(sf_rounds *r, const sf_block *block, const sf_block_statis
         r->lap.levels && r->from && sf_film_taken(pixel) == r->from && sf_stop_is_look(&r->options, r->from);
     if (lap_begins) sf_dyadic_begin(pixel);
     sf_film_add(pixel, statistics);
-    const double *means = statistics->moments.mean;
-    double mean = (means[0] + means[1] + means[2]) / 3;
+    double mean = sf_film_level_of(&statistics->moments);
     if (r->lap.levels) sf_dyadic_add(&pixel->evidence.dyadic, mean, block->number, r->lap);
     if (r->options.stop == SF_STOP_REPLICATES && block->number % SF_REPLICATES < SF_REPLICATES - 1)
         pixel->evidence.replicates[block->number % SF_REPLICATES] += mean;

@@ -5,13 +5,11 @@
 
 #include <math.h>
 
-#include "coordinates.h"
 #include "sunfleck/elementary.h"
 
-#define LEVELS 4
+#define LEVELS SF_DYADIC_LEVELS
 #define FIRST_LOOK 32u        /* two blocks: one difference */
 #define FIRST_REPLICATES 128u /* a block for each of eight */
-#define WIDEST_STEP 256u      /* of the lecture's rule */
 
 /* What the averaged variance is multiplied by: pixels whose estimate came out low are the ones
  * that stop. Measured, bench/coverage.py: 1.0 leaves 92 % coverage on the Cornell box, 1.4 95 %. */
@@ -34,9 +32,7 @@ static uint32_t first_look(const sf_render_options *o) {
 uint32_t sf_stop_next_look(const sf_render_options *o, uint32_t n) {
     if (o->stop == SF_STOP_STANDARD_ERROR) {
         if (n < o->min_spp && !o->spp) return o->min_spp;
-        uint32_t step = n / 4 / SF_LANES * SF_LANES;
-        step = step < SF_LANES ? SF_LANES : step > WIDEST_STEP ? WIDEST_STEP : step;
-        return n / SF_LANES * SF_LANES + step;
+        return sf_stop_quarter_more(n);
     }
     uint32_t first = first_look(o), power = power_at_least(n + 1);
     return power > first ? power : first;
@@ -61,13 +57,11 @@ sf_lap sf_stop_lap(const sf_render_options *o, uint32_t look) {
 
 /* ---- differences ---- */
 
-static double pixel_mean(const sf_vector_moments *m) { return (m->mean[0] + m->mean[1] + m->mean[2]) / 3; }
-
 void sf_dyadic_begin(sf_film_pixel *pixel) {
     sf_dyadic *d = &pixel->evidence.dyadic;
     for (int j = LEVELS - 1; j > 0; --j) d->squares[j] = d->squares[j - 1];
     d->squares[0] = 0;
-    d->pending[0] = pixel_mean(&pixel->moments);
+    d->pending[0] = sf_film_level_of(&pixel->moments);
     d->unit = 0;
 }
 
@@ -119,8 +113,6 @@ static pool_range range_of(const sf_film *film, uint32_t pool) {
                         held(top + SF_POOL_SIZE, film->y0, film->height)};
 }
 
-static uint64_t taken(const sf_film_pixel *pixel) { return pixel->moments.count + pixel->moments.nonfinite; }
-
 /* The factor 2^a by which variance falls as samples double: the slope of the logarithms of the
  * pooled squares against their level, each level weighted by its pairs. */
 static float fit_decay(const double squares[LEVELS], unsigned levels) {
@@ -159,14 +151,14 @@ void sf_stop_look_at_pool(sf_film *film, uint32_t pool, uint32_t look, sf_lap la
     for (uint32_t y = range.y0; y < range.y1; ++y)
         for (uint32_t x = range.x0; x < range.x1; ++x) {
             const sf_film_pixel *pixel = film->pixels + (size_t)y * film->width + x;
-            if (taken(pixel) != look) continue;
+            if (sf_film_taken(pixel) != look) continue;
             for (unsigned j = 0; j < lap.levels; ++j) squares[j] += (double)pixel->evidence.dyadic.squares[j];
         }
     float decay = film->decay[pool] = fit_decay(squares, lap.levels);
     for (uint32_t y = range.y0; y < range.y1; ++y)
         for (uint32_t x = range.x0; x < range.x1; ++x) {
             sf_film_pixel *pixel = film->pixels + (size_t)y * film->width + x;
-            if (taken(pixel) != look) continue;
+            if (sf_film_taken(pixel) != look) continue;
             pixel->look = (uint8_t)(lap.levels + lap.unit_shift);
             pixel->variance = predict_variance(&pixel->evidence.dyadic, lap.levels, decay);
         }
@@ -207,7 +199,8 @@ static double unseen(const sf_film *film, const sf_render_options *o, double n) 
 /* Over eight replicates of equal size; `factor` is Student's t with 7 degrees of freedom. */
 static float replicates_half_width(const sf_film_pixel *pixel, double factor) {
     const double *sums = pixel->evidence.replicates;
-    double mean = pixel_mean(&pixel->moments), blocks = (double)(taken(pixel) / (SF_LANES * SF_REPLICATES));
+    double mean = sf_film_level_of(&pixel->moments),
+           blocks = (double)(sf_film_taken(pixel) / (SF_LANES * SF_REPLICATES));
     double rest = mean * SF_REPLICATES, squares = 0;
     for (int r = 0; r < SF_REPLICATES - 1; ++r) {
         double off = sums[r] / blocks - mean;
@@ -226,7 +219,7 @@ double sf_stop_factor(const sf_render_options *o) {
 
 float sf_stop_half_width(const sf_film *film, const sf_render_options *o, uint32_t x, uint32_t y, double z) {
     const sf_film_pixel *pixel = film->pixels + (size_t)y * film->width + x;
-    if (o->stop == SF_STOP_REPLICATES && sf_stop_is_look(o, (uint32_t)taken(pixel)))
+    if (o->stop == SF_STOP_REPLICATES && sf_stop_is_look(o, (uint32_t)sf_film_taken(pixel)))
         return replicates_half_width(pixel, z);
     if (o->stop != SF_STOP_DYADIC || !pixel->look) return sf_film_half_width(pixel, z);
     double half_width = z * sqrt(SAFETY * (double)pooled_variance(film, x, y));

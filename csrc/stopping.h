@@ -19,6 +19,7 @@
 
 #include <stdbool.h>
 
+#include "coordinates.h"
 #include "film.h"
 
 #define SF_POOL_SIZE 16u /* pixels a side of the cells that decay is pooled over */
@@ -28,6 +29,13 @@ typedef struct sf_lap {
     unsigned levels; /* 0: the rule keeps no differences */
     unsigned unit_shift;
 } sf_lap;
+
+/* A quarter more than n, in whole blocks: one at the least, 256 samples at the most. */
+static inline uint32_t sf_stop_quarter_more(uint32_t n) {
+    uint32_t step = n / 4 / SF_LANES * SF_LANES;
+    step = step < SF_LANES ? SF_LANES : step > 256 ? 256 : step;
+    return n / SF_LANES * SF_LANES + step;
+}
 
 /* The least count above n at which the rule looks, whatever the render's own end. */
 uint32_t sf_stop_next_look(const sf_render_options *options, uint32_t n);

@@ -87,6 +87,14 @@ static inline void lit_floor_create(lit_floor *s, uint32_t max_bounces) {
     assert_ok(sf_scene_commit(s->scene, error));
 }
 
+static inline sf_film *render(const sf_scene *scene, const sf_render_options *options) {
+    sf_film *film;
+    assert_ok(sf_render(scene, options, &film, error));
+    return film;
+}
+
+static inline size_t film_pixels(const sf_film *film) { return (size_t)sf_film_width(film) * sf_film_height(film); }
+
 static inline const void *channel_data(const sf_film *film, const char *name) {
     for (size_t i = 0; i < sf_film_channel_count(film); ++i)
         if (strcmp(sf_film_channel(film, i).name, name) == 0) return sf_film_channel(film, i).data;
@@ -97,7 +105,7 @@ static inline const void *channel_data(const sf_film *film, const char *name) {
 /* Mean of (R+G+B)/3 over the film. */
 static inline double film_mean(const sf_film *film) {
     const float *color = channel_data(film, "R");
-    size_t n = (size_t)3 * sf_film_width(film) * sf_film_height(film);
+    size_t n = 3 * film_pixels(film);
     double sum = 0;
     for (size_t i = 0; i < n; ++i) sum += (double)color[i];
     return sum / (double)n;

@@ -18,14 +18,6 @@ static sf_render_options options_for(uint32_t size, uint32_t spp, uint32_t aovs)
     return options;
 }
 
-static sf_film *render(const sf_scene *scene, const sf_render_options *options) {
-    sf_film *film;
-    assert_ok(sf_render(scene, options, &film, error));
-    return film;
-}
-
-static size_t film_pixels(const sf_film *film) { return (size_t)sf_film_width(film) * sf_film_height(film); }
-
 /* ---- first hits ---- */
 
 /* A square of half-side 1 at z = 0 that faces +z, glows, and is seen from (0, 0, z). */

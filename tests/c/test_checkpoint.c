@@ -49,14 +49,6 @@ static sf_render_options options_for(uint32_t size, uint32_t spp) {
     return options;
 }
 
-static sf_film *render(const sf_scene *scene, const sf_render_options *options) {
-    sf_film *film;
-    assert_ok(sf_render(scene, options, &film, error));
-    return film;
-}
-
-static size_t film_pixels(const sf_film *film) { return (size_t)sf_film_width(film) * sf_film_height(film); }
-
 static void assert_same_film(const sf_film *a, const sf_film *b) {
     size_t pixels = film_pixels(a);
     assert_int_equal(pixels, film_pixels(b));

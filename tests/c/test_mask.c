@@ -18,12 +18,6 @@ static sf_render_options options_for(uint32_t spp) {
     return options;
 }
 
-static sf_film *render(const sf_scene *scene, const sf_render_options *options) {
-    sf_film *film;
-    assert_ok(sf_render(scene, options, &film, error));
-    return film;
-}
-
 /* A disk, a few scattered pixels, or all but one pixel of a cell. */
 static void draw_mask(int kind, uint8_t mask[SIZE][SIZE]) {
     for (int y = 0; y < SIZE; ++y)

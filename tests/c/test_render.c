@@ -18,14 +18,6 @@ static sf_render_options options_for(uint32_t size, uint32_t spp) {
     return options;
 }
 
-static sf_film *render(const sf_scene *scene, const sf_render_options *options) {
-    sf_film *film;
-    assert_ok(sf_render(scene, options, &film, error));
-    return film;
-}
-
-static size_t film_pixels(const sf_film *film) { return (size_t)sf_film_width(film) * sf_film_height(film); }
-
 /* Standard error of the film's mean, its pixels being independent. */
 static double mean_error(const sf_film *film, double z) {
     const float *half_width = channel_data(film, "half_width");

@@ -38,6 +38,12 @@ def test_samples_can_be_had_in_parts(penumbra: sf.Scene, pattern: str) -> None:
     assert not np.array_equal(parts[0].color, whole.color)
 
 
+def test_a_render_ends_at_the_last_index_that_there_is(penumbra: sf.Scene) -> None:
+    image = sf.render(penumbra, 8, 8, start=2**31 - 3, spp=3)
+    assert (image.samples == 3).all()
+    assert np.isfinite(image.color).all()
+
+
 def test_a_start_goes_with_a_fixed_count(penumbra: sf.Scene) -> None:
     with pytest.raises(ValueError, match="start is 16"):
         sf.render(penumbra, 8, 8, start=16, tolerance=0.1)
