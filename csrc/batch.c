@@ -6,7 +6,10 @@
 #include "batch.h"
 
 #include "aov.h"
+#include "camera_kernels.h"
 #include "coordinates_kernels.h"
+#include "gather_kernels.h"
+#include "light_kernels.h"
 #include "shade_kernels.h"
 
 /* The batch's run in progress: who works on what. */
@@ -15,6 +18,7 @@ typedef struct run {
     const sf_render_context *context;
     const sf_coordinates_kernels *coordinates;
     const sf_shade_kernels *shade;
+    const sf_light_kernels *light;
     uint32_t group; /* the plan's next group of dimensions */
 } run;
 
@@ -36,7 +40,8 @@ static void trace_camera(run *r) {
     next_coordinates(r, SF_DIMENSION_PIXEL, b->coordinate);
     bool lens = has(r, SF_STAGE_LENS);
     if (lens) next_coordinates(r, SF_DIMENSION_LENS, b->coordinate_by_ray);
-    r->shade->camera(b, &r->context->camera, r->context->filter, lens ? b->coordinate_by_ray : NULL);
+    sf_camera_kernels_at(r->context->isa)
+        ->camera(b, &r->context->camera, r->context->filter, lens ? b->coordinate_by_ray : NULL);
     sf_trace_nearest(b, scene, b->block_count, active, SF_COHERENT);
     r->shade->first_radiance(b, scene);
     if (b->hit_sums) sf_aov_gather(b, r->context);
@@ -48,10 +53,10 @@ static void connect_lights(run *r, uint32_t bounce, uint32_t count) {
     next_coordinates(r, SF_DIMENSION_LIGHT, r->batch->coordinate);
     if (has(r, SF_STAGE_CHOOSE_LIGHT)) next_coordinates(r, SF_DIMENSION_CHOICE, r->batch->coordinate + 2);
     bool weigh = bounce < plan->max_bounces || has(r, SF_STAGE_LAST_SURFACE);
-    r->shade->light(r->batch, r->context->scene, count, weigh);
-    uint32_t rays = r->shade->sort_shadow_rays(r->batch, count);
+    r->light->light(r->batch, r->context->scene, count, weigh);
+    uint32_t rays = r->light->sort_shadow_rays(r->batch, count);
     sf_trace_shadow(r->batch, r->context->scene, rays);
-    r->shade->add_light(r->batch, count);
+    r->light->add_light(r->batch, count);
 }
 
 /* Surface-sampled rays from the vertices, and the radiance that they find. */
@@ -69,7 +74,8 @@ void sf_batch_run(sf_batch *batch, const sf_render_context *context) {
     run r = {.batch = batch,
              .context = context,
              .coordinates = sf_coordinates_kernels_at(context->isa),
-             .shade = sf_shade_kernels_at(context->isa)};
+             .shade = sf_shade_kernels_at(context->isa),
+             .light = sf_light_kernels_at(context->isa)};
     const sf_plan *plan = &context->scene->plan;
     trace_camera(&r);
     bool light = has(&r, SF_STAGE_LIGHT);
@@ -86,5 +92,5 @@ void sf_batch_run(sf_batch *batch, const sf_render_context *context) {
         if (light) connect_lights(&r, bounce, count);
         if (onward) trace_surface(&r, count);
     }
-    r.shade->gather_statistics(batch);
+    sf_gather_kernels_at(context->isa)->gather_statistics(batch);
 }

@@ -22,7 +22,7 @@
 
 /* Every test works in a folder of its own, which goes with what is in it. */
 static int enter_folder(void **state) {
-    char name[] = "sunfleck-checkpoint-XXXXXX";
+    char name[] = "/tmp/sunfleck-checkpoint-XXXXXX";
     lit_floor *s = malloc(sizeof *s);
     if (!s || !mkdtemp(name) || chdir(name) != 0) return -1;
     lit_floor_create(s, 2);

@@ -6,7 +6,7 @@
 #include "scenes.h"
 
 #include "batch.h"
-#include "shade_kernels.h"
+#include "gather_kernels.h"
 
 #define PI 3.14159265358979323846
 
@@ -538,7 +538,7 @@ static void test_samples_that_are_not_finite_are_counted_and_left_out(void **sta
         batch->radiance[1][5] = INFINITY;
         batch->radiance[2][7] = -INFINITY;
         batch->radiance[0][SF_LANES + 12] = NAN; /* not asked for */
-        sf_shade_kernels_at((sf_isa)isa)->gather_statistics(batch);
+        sf_gather_kernels_at((sf_isa)isa)->gather_statistics(batch);
         sf_film_pixel pixel = {.half_width = 0};
         for (int block = 0; block < 2; ++block) sf_film_add(&pixel, batch->statistics + block);
         assert_int_equal(pixel.moments.count, 13 + 8);

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "camera_kernels.h"
+
+#include <math.h>
+
+#include "sunfleck/mapping.h"
+
+static void apply_filter(sf_batch *b, sf_pixel_filter filter) {
+    uint32_t n = b->block_count * SF_LANES;
+    float place[2];
+    if (filter == SF_PIXEL_FILTER_TENT)
+        for (uint32_t i = 0; i < n; ++i) {
+            sf_pixel_tent_sample(b->coordinate[0][i], b->coordinate[1][i], place);
+            b->coordinate[0][i] = place[0];
+            b->coordinate[1][i] = place[1];
+        }
+    else if (filter == SF_PIXEL_FILTER_GAUSSIAN)
+        for (uint32_t i = 0; i < n; ++i) {
+            sf_pixel_gaussian_sample(b->coordinate[0][i], b->coordinate[1][i], 0.4f, place);
+            b->coordinate[0][i] = place[0];
+            b->coordinate[1][i] = place[1];
+        }
+}
+
+/* Directions through the pixels: forward + x right + y up, before they are normalized. */
+static void aim(sf_batch *b, const sf_camera_frame *camera) {
+    for (uint32_t block = 0; block < b->block_count; ++block) {
+        float left = (float)b->blocks[block].x - camera->half_width,
+              top = camera->half_height - (float)b->blocks[block].y;
+        for (uint32_t i = block * SF_LANES; i < (block + 1) * SF_LANES; ++i) {
+            float x = (left + b->coordinate[0][i]) * camera->pixel, y = (top - b->coordinate[1][i]) * camera->pixel;
+            for (int c = 0; c < 3; ++c)
+                b->direction[c][i] = camera->forward[c] + x * camera->right[c] + y * camera->up[c];
+        }
+    }
+}
+
+static void leave_pinhole(sf_batch *b, const sf_camera_frame *camera) {
+    for (uint32_t i = 0; i < b->block_count * SF_LANES; ++i)
+        for (int c = 0; c < 3; ++c) b->origin[c][i] = camera->position[c];
+}
+
+/* A point of the lens, and from it to where the pinhole's ray meets the focal plane. */
+static void leave_lens(sf_batch *b, const sf_camera_frame *camera, float (*lens)[SF_PATHS]) {
+    for (uint32_t i = 0; i < b->block_count * SF_LANES; ++i) {
+        float disk[2];
+        sf_disk_concentric_sample(lens[0][i], lens[1][i], disk);
+        float x = disk[0] * camera->aperture_radius, y = disk[1] * camera->aperture_radius;
+        for (int c = 0; c < 3; ++c) {
+            float offset = x * camera->right[c] + y * camera->up[c];
+            b->origin[c][i] = camera->position[c] + offset;
+            b->direction[c][i] = camera->focus_distance * b->direction[c][i] - offset;
+        }
+    }
+}
+
+static void normalize_directions(sf_batch *b) {
+    for (uint32_t i = 0; i < b->block_count * SF_LANES; ++i) {
+        float x = b->direction[0][i], y = b->direction[1][i], z = b->direction[2][i];
+        float scale = 1 / sqrtf(x * x + y * y + z * z);
+        b->direction[0][i] = x * scale;
+        b->direction[1][i] = y * scale;
+        b->direction[2][i] = z * scale;
+    }
+}
+
+static void camera(sf_batch *b, const sf_camera_frame *frame, sf_pixel_filter filter, float (*lens)[SF_PATHS]) {
+    apply_filter(b, filter);
+    aim(b, frame);
+    if (lens)
+        leave_lens(b, frame, lens);
+    else
+        leave_pinhole(b, frame);
+    normalize_directions(b);
+}
+
+const sf_camera_kernels SF_AT_LEVEL(sf_camera_kernels) = {camera};

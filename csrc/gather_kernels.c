@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "gather_kernels.h"
+
+#include <math.h>
+
+#include "lanes.h"
+
+/* keep[l] = 1 where the sample was asked for and is finite, else 0. */
+static inline void choose_samples(const sf_batch *b, uint32_t first, uint32_t wanted, float keep[SF_LANES]) {
+    SF_ROLLED
+    for (uint32_t l = 0; l < SF_LANES; ++l) {
+        float sum = b->radiance[0][first + l] + b->radiance[1][first + l] + b->radiance[2][first + l];
+        float asked = (float)(int)(wanted >> l & 1u);
+        keep[l] = fabsf(sum) <= 3.4e38f ? asked : 0.0f;
+    }
+}
+
+static void gather_block(const sf_batch *b, uint32_t block, sf_block_statistics *out) {
+    uint32_t first = block * SF_LANES, wanted = b->blocks[block].active;
+    SF_ALIGNED(float) keep[SF_LANES];
+    SF_ALIGNED(double) value[SF_LANES], squares[SF_LANES] = {0};
+    choose_samples(b, first, wanted, keep);
+    SF_ROLLED
+    for (int l = 0; l < SF_LANES; ++l) value[l] = (double)keep[l];
+    double count = sf_sum16(value), inverse = count > 0 ? 1 / count : 0;
+    for (int c = 0; c < 3; ++c) {
+        const float *radiance = b->radiance[c] + first;
+        SF_ROLLED
+        for (int l = 0; l < SF_LANES; ++l) value[l] = (double)(keep[l] > 0 ? radiance[l] : 0.0f);
+        double mean = out->moments.mean[c] = sf_sum16(value) * inverse;
+        SF_ROLLED
+        for (int l = 0; l < SF_LANES; ++l) {
+            double off = (double)keep[l] * (value[l] - mean);
+            squares[l] += off * off;
+        }
+    }
+    SF_ROLLED
+    for (int l = 0; l < SF_LANES; ++l) value[l] = (double)(keep[l] * b->covered[first + (uint32_t)l]);
+    out->hits = (uint32_t)(int)sf_sum16(value);
+    out->moments.m2 = sf_sum16(squares);
+    out->moments.count = (uint64_t)(int)count;
+    out->moments.nonfinite = (uint64_t)sf_count_bits(wanted) - out->moments.count;
+}
+
+static void gather_statistics(sf_batch *b) {
+    for (uint32_t block = 0; block < b->block_count; ++block) gather_block(b, block, b->statistics + block);
+}
+
+const sf_gather_kernels SF_AT_LEVEL(sf_gather_kernels) = {gather_statistics};

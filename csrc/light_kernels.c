@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "light_kernels.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "rays.h"
+#include "sunfleck/mapping.h"
+
+#define SHADOW_BINS 64 /* 4 quarters of a cell x 4 x 4 cells of the light */
+
+/* The pieces that the 16 rays of a packet were given, field by field. */
+typedef struct light_lanes {
+    SF_ALIGNED(float) field[SF_LIGHT_SAMPLED][SF_LANES];
+} light_lanes;
+
+/* What connects vertex first + l to a point of its light piece. */
+static inline void connect(sf_batch *b, const light_lanes *lights, uint32_t first, uint32_t l, float s, float t,
+                           bool weigh) {
+    const float (*field)[SF_LANES] = lights->field;
+    uint32_t i = first + l;
+    /* On a triangle the lecture's map, on a parallelogram the unit square itself. */
+    float root = sqrtf(s), rectangle = field[SF_LIGHT_RECTANGLE][l];
+    float alpha = rectangle > 0 ? s : root * t, beta = rectangle > 0 ? t : 1 - root;
+    float to[3], normal[3], lifted[3];
+    for (int c = 0; c < 3; ++c) {
+        lifted[c] = field[SF_LIGHT_ORIGIN_X + c][l] + alpha * field[SF_LIGHT_EDGE1_X + c][l] +
+                    beta * field[SF_LIGHT_EDGE2_X + c][l];
+        normal[c] = field[SF_LIGHT_NORMAL_X + c][l];
+        to[c] = lifted[c] - b->point[c][i];
+    }
+    /* Move the light point off its surface too, as the vertex was, so that the ray ends before it. */
+    float ax = fabsf(lifted[0]), ay = fabsf(lifted[1]), az = fabsf(lifted[2]);
+    float largest = ax > ay ? ax : ay;
+    largest = largest > az ? largest : az;
+    float square = to[0] * to[0] + to[1] * to[1] + to[2] * to[2], distance = sqrtf(square), inverse = 1 / square;
+    float lift = 0x1p-18f * (largest + distance);
+    float cos_surface = to[0] * b->normal[0][i] + to[1] * b->normal[1][i] + to[2] * b->normal[2][i];
+    float cos_light = -(to[0] * normal[0] + to[1] * normal[1] + to[2] * normal[2]);
+    bool sees = (cos_surface > 0) & (cos_light > 0);
+    /* cos cos / distance^2, each cosine still times the distance. */
+    float geometry = sees ? cos_surface * inverse * (cos_light * inverse) : 0.0f;
+    if (weigh) {
+        float surface_pdf = cos_surface * (1.0f / SF_PI_F) / distance;
+        float light_pdf = field[SF_LIGHT_PDF][l] * square * distance / cos_light;
+        geometry = sees ? geometry * sf_power_weight(light_pdf, surface_pdf) : 0.0f;
+    }
+    float sum = 0;
+    for (int c = 0; c < 3; ++c) {
+        b->to_light[c][i] = to[c] + lift * normal[c];
+        float value = b->throughput[c][i] * field[SF_LIGHT_WEIGHT_R + c][l] * geometry;
+        b->contribution[c][i] = value;
+        sum += value;
+    }
+    b->alive[i] = sum > 0;
+}
+
+/* The quarter of the cell and the cell of the light: rays of a bin start close to each other and
+ * end close to each other. */
+static inline uint32_t shadow_bin(uint32_t path, float s, float t) {
+    return path / (SF_PATHS / 4) * 16 + (uint32_t)(int)(s * 4) * 4 + (uint32_t)(int)(t * 4);
+}
+
+static void connect_packet(sf_batch *b, const light_lanes *lights, float (*u)[SF_PATHS], uint32_t first, bool weigh) {
+    SF_ALIGNED(float) s[SF_LANES], t[SF_LANES]; /* apart from what is written below */
+    memcpy(s, u[0] + first, sizeof s);
+    memcpy(t, u[1] + first, sizeof t);
+    if (weigh)
+        for (uint32_t l = 0; l < SF_LANES; ++l) connect(b, lights, first, l, s[l], t[l], true);
+    else
+        for (uint32_t l = 0; l < SF_LANES; ++l) connect(b, lights, first, l, s[l], t[l], false);
+    for (uint32_t l = 0; l < SF_LANES; ++l) b->bin[first + l] = shadow_bin(b->path[first + l], s[l], t[l]);
+}
+
+static inline void give_piece(light_lanes *lights, uint32_t l, const float piece[SF_LIGHT_FIELDS]) {
+    for (int f = 0; f < SF_LIGHT_SAMPLED; ++f) lights->field[f][l] = piece[f];
+}
+
+/* Draws a piece from the alias table: the integer part picks a column, the rest decides. */
+static inline uint32_t choose_piece(const sf_light_table *lights, float u) {
+    uint32_t last = (uint32_t)lights->count - 1;
+    float place = u * (float)lights->count;
+    uint32_t row = (uint32_t)place;
+    row = row < last ? row : last;
+    return place - (float)row < lights->pieces[row][SF_LIGHT_KEEP] ? row : lights->alias[row];
+}
+
+static void light(sf_batch *b, const sf_scene *scene, uint32_t count, bool weigh) {
+    const sf_light_table *lights = &scene->lights;
+    bool several = lights->count > 1;
+    float (*u)[SF_PATHS] = sf_coordinates_by_ray(b, count, several ? 3 : 2);
+    light_lanes lanes;
+    for (uint32_t l = 0; l < SF_LANES; ++l) give_piece(&lanes, l, lights->pieces[0]);
+    for (uint32_t first = 0; first < count; first += SF_LANES) {
+        if (several) /* lanes past the end hold no place in the table: they keep what they have */
+            for (uint32_t l = 0; l < SF_LANES && first + l < count; ++l)
+                give_piece(&lanes, l, lights->pieces[choose_piece(lights, u[2][first + l])]);
+        connect_packet(b, &lanes, u, first, weigh);
+    }
+}
+
+/* A counting sort. */
+static uint32_t sort_shadow_rays(sf_batch *b, uint32_t count) {
+    uint32_t place[SHADOW_BINS + 1] = {0};
+    for (uint32_t i = 0; i < count; ++i) place[b->bin[i] + 1] += b->alive[i];
+    for (uint32_t bin = 0; bin < SHADOW_BINS; ++bin) place[bin + 1] += place[bin];
+    for (uint32_t i = 0; i < count; ++i)
+        if (b->alive[i]) b->order[place[b->bin[i]]++] = i;
+    return place[SHADOW_BINS - 1];
+}
+
+/* A ray that was not alive was not traced, and its contribution may be no number. */
+static inline float arriving(const sf_batch *b, int c, uint32_t i) {
+    return b->alive[i] && b->arrives[i] > 0 ? b->contribution[c][i] : 0.0f;
+}
+
+static void add_light(sf_batch *b, uint32_t count) {
+    bool in_place = count == b->block_count * SF_LANES; /* all paths live: path[i] = i */
+    for (int c = 0; c < 3; ++c)
+        if (in_place)
+            for (uint32_t i = 0; i < count; ++i) b->radiance[c][i] += arriving(b, c, i);
+        else {
+            SF_INDEPENDENT
+            for (uint32_t i = 0; i < count; ++i) b->radiance[c][b->path[i]] += arriving(b, c, i);
+        }
+}
+
+const sf_light_kernels SF_AT_LEVEL(sf_light_kernels) = {light, sort_shadow_rays, add_light};

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* What the stages share that work on a batch's rays; for kernels. */
+#ifndef SUNFLECK_RAYS_H
+#define SUNFLECK_RAYS_H
+
+#include "batch.h"
+
+/* Rays in whole packets. */
+static inline uint32_t sf_whole_packets(uint32_t count) { return (count + SF_LANES - 1) / SF_LANES * SF_LANES; }
+
+/* The coordinates of the living paths; they are where they belong while all of them live. */
+static inline float (*sf_coordinates_by_ray(sf_batch *b, uint32_t count, int coordinates)) [SF_PATHS] {
+    if (count == b->block_count * SF_LANES) return b->coordinate;
+    for (int c = 0; c < coordinates; ++c)
+        for (uint32_t i = 0; i < count; ++i) b->coordinate_by_ray[c][i] = b->coordinate[c][b->path[i]];
+    return b->coordinate_by_ray;
+}
+
+/* The power heuristic with exponent 2 (Veach 1997, eq. 9.11), pdf^2 / (pdf^2 + other^2), by the
+ * ratio: the squares of densities by solid angle leave the floats' range in large scenes. */
+static inline float sf_power_weight(float pdf, float other) {
+    float ratio = other / pdf;
+    return 1 / (1 + ratio * ratio);
+}
+
+#endif
