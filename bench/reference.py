@@ -3,7 +3,7 @@
 
 """Converged references of the built-in scenes, made by Mitsuba on the very same arrays.
 
-    make build/reference/penumbra_256.npy       (any of penumbra, cornell, defocus)
+    make build/reference/penumbra_256.npy       (any of penumbra, cornell, defocus, keyhole)
 
 Writes NAME_SIZE.npy, (SIZE, SIZE, 3) float32 linear radiance under the box filter, and
 NAME_SIZE.txt, which says how it was made and how far it may itself be off.
@@ -30,7 +30,7 @@ import numpy as np
 import sunfleck as sf
 
 PASS_SPP = 256  # a square, as multijitter wants; at 256 x 256 a pass takes under 1 GB
-PASSES = {"penumbra": 128, "cornell": 48, "defocus": 128}
+PASSES = {"penumbra": 128, "cornell": 48, "defocus": 128, "keyhole": 128}
 
 
 def choose_variant() -> str:

@@ -84,6 +84,11 @@ void sf_aov_destroy(sf_aov_film *aovs) {
 
 /* ---- sums ---- */
 
+void sf_aov_reset(sf_film *film) {
+    sf_aov_film *aovs = film->aovs;
+    memset(aovs->sums, 0, (size_t)film->width * film->height * aovs->sums_per_pixel * sizeof *aovs->sums);
+}
+
 void sf_aov_gather(sf_batch *batch, const sf_render_context *context) {
     const sf_aov_kernels *kernels = sf_aov_kernels_at(context->isa);
     const sf_mesh_table *meshes = &context->scene->mesh_table;

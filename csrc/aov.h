@@ -35,6 +35,9 @@ typedef struct sf_aov_film {
 sf_status sf_aov_create(const sf_render_options *options, sf_film *film, sf_error *error);
 void sf_aov_destroy(sf_aov_film *aovs);
 
+/* Sets all sums back to 0. */
+void sf_aov_reset(sf_film *film);
+
 /* The batch's sums over first hits, after its camera rays were traced and before others are. */
 void sf_aov_gather(sf_batch *batch, const sf_render_context *context);
 

@@ -13,14 +13,16 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "aov.h"
 #include "container.h"
 #include "error.h"
+#include "mask.h"
 #include "render_options.h"
 #include "replacement.h"
 #include "stopping.h"
 
 #define TEXT_SIZE 96
-#define MAX_ARRAYS 64
+#define MAX_ARRAYS 80
 
 /* ---- the tables ---- */
 
@@ -68,6 +70,7 @@ static const option_field option_fields[] = {
     OPTION_NAME(pattern, name_pattern),
     OPTION_NAME(pixel_filter, name_filter),
     OPTION_NAME(stop, name_stop),
+    OPTION(unbiased, SF_ARRAY_U32, 1, EQUAL),
     OPTION_NAME(seeds, name_seeds),
     OPTION(seed, SF_ARRAY_U64, 1, EQUAL),
     OPTION(threads, SF_ARRAY_U32, 1, FREE),
@@ -90,7 +93,7 @@ static const column state_columns[] = {
     STATE(in_lap, SF_ARRAY_U32),         STATE(target, SF_ARRAY_F64),
     STATE(level_fixed, SF_ARRAY_U32),    STATE(level, SF_ARRAY_F64),
     STATE(tolerance, SF_ARRAY_F64),      STATE(seconds, SF_ARRAY_F64),
-    STATE(traced_samples, SF_ARRAY_U64),
+    STATE(traced_samples, SF_ARRAY_U64), STATE(second, SF_ARRAY_U32),
 };
 
 #define PIXEL(name, field, type, width) {"pixel." name, offsetof(sf_film_pixel, field), type, width}
@@ -99,12 +102,14 @@ static const column pixel_columns[] = {
     PIXEL("mean", moments.mean, SF_ARRAY_F64, 3),
     PIXEL("m2", moments.m2, SF_ARRAY_F64, 1),
     PIXEL("nonfinite", moments.nonfinite, SF_ARRAY_U64, 1),
-    /* The rule replicates keeps seven doubles in the same 56 bytes, which these fields cover. */
+    /* The rule replicates keeps seven doubles in the same 56 bytes, which these fields cover, and a
+     * second set keeps the first of them. */
     PIXEL("dyadic.unit", evidence.dyadic.unit, SF_ARRAY_F64, 1),
     PIXEL("dyadic.pending", evidence.dyadic.pending, SF_ARRAY_F64, 4),
     PIXEL("dyadic.squares", evidence.dyadic.squares, SF_ARRAY_F32, 4),
     PIXEL("variance", variance, SF_ARRAY_F32, 1),
     PIXEL("look", look, SF_ARRAY_U8, 1),
+    PIXEL("doubt", doubt, SF_ARRAY_U8, 1),
     PIXEL("hits", hits, SF_ARRAY_U32, 1),
     PIXEL("half_width", half_width, SF_ARRAY_F32, 1),
     PIXEL("reason", reason, SF_ARRAY_U8, 1),
@@ -144,12 +149,18 @@ static int enumeration_value(const option_field *field, const sf_render_options 
     return value;
 }
 
+static void list_mask(array_list *list, sf_film *film) {
+    list_array(list, "mask", SF_ARRAY_U8, 1, (uint64_t)film->crop_width * film->crop_height, film->mask, 1);
+}
+
 /* What identifies the picture, for writing. */
 static void list_identity(array_list *list, sf_film *film) {
     list_text(list, "version", sf_version());
     list_text(list, "instruction_set", sf_isa_name(film->isa));
     list_array(list, "embree_version", SF_ARRAY_U32, 1, 1, &film->embree_version, 4);
     list_array(list, "scene_hash", SF_ARRAY_U64, 1, 1, &film->scene_hash, 8);
+    list_array(list, "mask_hash", SF_ARRAY_U64, 1, 1, &film->mask_hash, 8);
+    if (film->mask) list_mask(list, film);
     for (size_t i = 0; i < OPTION_COUNT; ++i) {
         const option_field *f = option_fields + i;
         if (f->name_of)
@@ -168,6 +179,9 @@ static void list_progress(array_list *list, sf_checkpoint *c) {
     list_array(list, "active", SF_ARRAY_U64, 1, c->cells, c->active, sizeof *c->active);
     list_columns(list, pixel_columns, COUNT(pixel_columns), film->pixels, (uint64_t)film->width * film->height,
                  sizeof *film->pixels);
+    if (film->aovs && film->aovs->sums_per_pixel)
+        list_array(list, "aov.sums", SF_ARRAY_F64, film->aovs->sums_per_pixel, (uint64_t)film->width * film->height,
+                   film->aovs->sums, film->aovs->sums_per_pixel * sizeof *film->aovs->sums);
 }
 
 sf_status sf_checkpoint_save(const sf_checkpoint *checkpoint, const char *path, sf_error *error) {
@@ -239,6 +253,7 @@ static sf_status take_progress(const sf_container *file, sf_checkpoint *c, sf_er
     for (size_t i = 0; i < c->cells; ++i) sound = sound && !(c->open[i] & ~layout[i]) && !(c->active[i] & ~layout[i]);
     for (size_t i = 0; i < (size_t)c->film->width * c->film->height; ++i)
         sound = sound && c->film->pixels[i].reason < SF_STOP_REASON_COUNT;
+    sound = sound && c->film->counted > 0 && c->state.second <= 1;
     free(layout);
     if (status || sound) return status;
     return sf_fail(error, SF_STATUS_IO, "checkpoint '%s' holds values that no render writes", file->path);
@@ -325,14 +340,20 @@ static void compare_option(differences *d, const option_field *field, const sf_r
     d->limits |= field->rule != EQUAL;
 }
 
+/* "none", or the hash. */
+static void print_mask(char text[TEXT_SIZE], uint64_t hash) {
+    snprintf(text, TEXT_SIZE, hash ? "%016" PRIx64 : "none", hash);
+}
+
 static sf_status compare_identity(differences *d, const sf_container *file, const sf_film *film, sf_error *error) {
     char version[TEXT_SIZE], isa[TEXT_SIZE], theirs[TEXT_SIZE], ours[TEXT_SIZE];
-    uint64_t hash;
+    uint64_t hash, mask;
     uint32_t embree;
     sf_status status = take_text(file, "version", version, error);
     if (!status) status = take_text(file, "instruction_set", isa, error);
     if (!status) status = take_u32(file, "embree_version", &embree, error);
     if (!status) status = take_u64(file, "scene_hash", &hash, error);
+    if (!status) status = take_u64(file, "mask_hash", &mask, error);
     if (status) return status;
     if (strcmp(version, sf_version()) != 0) add_difference(d, "version", version, sf_version());
     if (strcmp(isa, sf_isa_name(film->isa)) != 0) add_difference(d, "instruction set", isa, sf_isa_name(film->isa));
@@ -342,6 +363,9 @@ static sf_status compare_identity(differences *d, const sf_container *file, cons
     snprintf(theirs, sizeof theirs, "%016" PRIx64, hash);
     snprintf(ours, sizeof ours, "%016" PRIx64, film->scene_hash);
     if (hash != film->scene_hash) add_difference(d, "scene", theirs, ours);
+    print_mask(theirs, mask);
+    print_mask(ours, film->mask_hash);
+    if (mask != film->mask_hash) add_difference(d, "mask", theirs, ours);
     return SF_STATUS_OK;
 }
 
@@ -361,6 +385,11 @@ static sf_status match(const sf_container *file, const sf_film *film, const sf_r
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "checkpoint '%.100s' was made with %s; this render has %s%s",
                        file->path, d.theirs, d.ours,
                        d.limits ? " (counts may only grow, the tolerance only shrink)" : "");
+    if (*more && film->options.unbiased)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                       "checkpoint '%s' has unbiased set, and its second set does not grow: spp, max_spp and the "
+                       "tolerance must be the file's",
+                       file->path);
     if (theirs.spp != film->options.spp && is_closed(theirs.pattern))
         return sf_fail(
             error, SF_STATUS_INVALID_VALUE,
@@ -400,15 +429,16 @@ sf_status sf_checkpoint_restore(sf_checkpoint *c, const char *path, sf_resume *r
 /* ---- a film without its render ---- */
 
 /* The pixels of a cell that were still on their way have no decision of their own yet. */
-static void mark_unfinished(sf_film *film, const uint64_t *open) {
+static void mark_unfinished(sf_film *film, const uint64_t *open, bool second) {
     uint32_t columns = (film->width + SF_CELL_SIZE - 1) / SF_CELL_SIZE;
-    double z = sf_stop_factor(&film->options);
+    sf_stop_factors factors = sf_stop_factors_of(&film->options);
     for (uint32_t y = 0; y < film->height; ++y)
         for (uint32_t x = 0; x < film->width; ++x) {
             uint32_t bit = sf_cell_number(x % SF_CELL_SIZE, y % SF_CELL_SIZE);
             if (!(open[y / SF_CELL_SIZE * (size_t)columns + x / SF_CELL_SIZE] >> bit & 1u)) continue;
             sf_film_pixel *pixel = film->pixels + (size_t)y * film->width + x;
-            pixel->half_width = sf_stop_half_width(film, &film->options, x, y, z);
+            pixel->half_width = second ? sf_film_half_width(pixel, sf_normal_factor(film->options.confidence))
+                                       : sf_stop_half_width(film, &film->options, x, y, &factors);
             pixel->reason = pixel->moments.nonfinite ? SF_STOP_SUSPICIOUS : SF_STOP_INTERRUPTED;
         }
 }
@@ -431,32 +461,50 @@ static sf_isa find_isa(const char *name) {
     return SF_ISA_BASELINE;
 }
 
-static sf_status load_film(const sf_container *file, sf_film **out, sf_error *error) {
-    sf_checkpoint c = {.film = NULL};
+/* A film with room for what the file holds, and its identity. */
+static sf_status make_film(const sf_container *file, sf_film **film, sf_error *error) {
     sf_render_options options;
     char isa[TEXT_SIZE];
+    uint64_t mask;
     sf_status status = take_options(file, &options, error);
     if (!status) status = sf_render_options_complete(&options, error);
     if (!status) status = take_text(file, "instruction_set", isa, error);
-    if (!status) status = sf_film_create(&options, &c.film, error);
+    if (!status) status = take_u64(file, "mask_hash", &mask, error);
+    if (!status) status = sf_film_create(&options, mask != 0, film, error);
     if (status) return status;
-    c.cells = (size_t)((c.film->width + SF_CELL_SIZE - 1) / SF_CELL_SIZE) *
-              ((c.film->height + SF_CELL_SIZE - 1) / SF_CELL_SIZE);
-    c.active = malloc(c.cells * sizeof *c.active);
-    c.open = malloc(c.cells * sizeof *c.open);
-    c.film->isa = find_isa(isa);
-    if (c.open) memset(c.open, 0xff, c.cells * sizeof *c.open);
-    if (!c.active || !c.open) status = sf_fail_memory(error, "the list of cells", c.cells * sizeof *c.active);
-    if (!status) status = take_u64(file, "scene_hash", &c.film->scene_hash, error);
-    if (!status) status = take_u32(file, "embree_version", &c.film->embree_version, error);
-    if (!status) status = take_progress(file, &c, error);
-    if (!status) {
-        c.film->summary.level = c.state.level; /* half-widths may refer to them */
-        c.film->summary.tolerance = c.state.tolerance;
-        mark_unfinished(c.film, c.open);
-        adopt_state(c.film, &c.state);
-        status = sf_film_describe(c.film, error);
-    }
+    (*film)->isa = find_isa(isa);
+    (*film)->mask_hash = mask;
+    status = take_u64(file, "scene_hash", &(*film)->scene_hash, error);
+    if (!status) status = take_u32(file, "embree_version", &(*film)->embree_version, error);
+    if (status || !mask) return status;
+    array_list list = {.count = 0};
+    list_mask(&list, *film);
+    status = sf_container_take(file, list.arrays, error);
+    sf_mask_count(*film);
+    return status;
+}
+
+/* Fills the film from the file, and draws the conclusions. */
+static sf_status fill_film(const sf_container *file, sf_checkpoint *c, sf_error *error) {
+    c->cells = (size_t)((c->film->width + SF_CELL_SIZE - 1) / SF_CELL_SIZE) *
+               ((c->film->height + SF_CELL_SIZE - 1) / SF_CELL_SIZE);
+    c->active = malloc(c->cells * sizeof *c->active);
+    c->open = malloc(c->cells * sizeof *c->open);
+    if (!c->active || !c->open) return sf_fail_memory(error, "the list of cells", c->cells * sizeof *c->active);
+    memset(c->open, 0xff, c->cells * sizeof *c->open);
+    sf_status status = take_progress(file, c, error);
+    if (status) return status;
+    c->film->summary.level = c->state.level; /* half-widths may refer to them */
+    c->film->summary.tolerance = c->state.tolerance;
+    mark_unfinished(c->film, c->open, c->state.second);
+    adopt_state(c->film, &c->state);
+    return sf_film_describe(c->film, error);
+}
+
+static sf_status load_film(const sf_container *file, sf_film **out, sf_error *error) {
+    sf_checkpoint c = {.film = NULL};
+    sf_status status = make_film(file, &c.film, error);
+    if (!status) status = fill_film(file, &c, error);
     free(c.active);
     free(c.open);
     if (status) sf_film_destroy(c.film);

@@ -19,6 +19,7 @@ typedef struct sf_round_state {
     double level, tolerance;
     double target;  /* of a budget */
     double seconds; /* of all calls so far */
+    uint32_t second; /* 1 where the pilot is over and the second set is taken */
     uint64_t traced_samples;
 } sf_round_state;
 

@@ -86,7 +86,7 @@ static uint64_t choose_beyond(sf_rounds *r, double target) {
  * largest half-widths, `worst` being the largest of all. False: of none. */
 static bool keep_within_samples(sf_rounds *r, uint64_t count, double worst) {
     if (!r->options.samples) return true;
-    uint64_t left = r->options.samples - sf_rounds_samples(r);
+    uint64_t left = sf_rounds_budget(r) - sf_rounds_samples(r);
     uint32_t step = r->look - r->from;
     if (r->from == 0 && left / count < step) { /* not even a first look: as far as it goes, together */
         r->look = (uint32_t)(left / count);
@@ -119,10 +119,19 @@ static bool choose_by_budget(sf_rounds *r) {
     }
 }
 
+/* The least count at which an open pixel has its second set. */
+static uint32_t least_planned(const sf_rounds *r) {
+    double least = SF_MAX_SPP;
+    for (uint32_t cell = 0; cell < sf_rounds_cell_count(r); ++cell)
+        for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m)
+            if (r->open[cell] >> m & 1u) least = fmin(least, sf_rounds_pixel(r, cell, m)->evidence.planned);
+    return (uint32_t)least;
+}
+
 /* Sets the next lap: its pixels, where it begins and where it looks. False: nothing is left. */
 bool sf_rounds_begin_lap(sf_rounds *r) {
     bool budget = !r->options.spp && !(r->options.relative_tolerance > 0 || r->options.absolute_tolerance > 0);
-    if (budget) {
+    if (budget && !r->second) {
         if (!choose_by_budget(r)) return false;
     } else {
         memcpy(r->active, r->open, sf_rounds_cell_count(r) * sizeof *r->active);
@@ -131,8 +140,9 @@ bool sf_rounds_begin_lap(sf_rounds *r) {
     sf_rounds_list_tiles(r);
     r->in_lap = r->tile_count > 0;
     if (!r->in_lap) return false; /* after the last sample there is no look */
-    if (!budget) r->look = sf_stop_next_look(&r->options, r->from);
+    if (r->second) r->look = least_planned(r);
+    else if (!budget) r->look = sf_stop_next_look(&r->options, r->from);
     r->to = r->from;
-    r->lap = sf_stop_lap(&r->options, r->look);
+    r->lap = r->second ? (sf_lap){0, 0} : sf_stop_lap(&r->options, r->look);
     return true;
 }

@@ -73,7 +73,7 @@ static sf_status allocate_arrays(sf_film *film, bool masked, sf_error *error) {
     return SF_STATUS_OK;
 }
 
-sf_status sf_film_create(const sf_render_options *options, sf_film **out, sf_error *error) {
+sf_status sf_film_create(const sf_render_options *options, bool masked, sf_film **out, sf_error *error) {
     sf_film *film = calloc(1, sizeof *film);
     if (!film) return sf_fail_memory(error, "a film", sizeof *film);
     const uint32_t *crop = options->crop;
@@ -94,7 +94,7 @@ sf_status sf_film_create(const sf_render_options *options, sf_film **out, sf_err
     film->options.mask = NULL;
     film->parts = malloc(sizeof *film->parts);
     film->part_count = 1;
-    sf_status status = film->parts ? allocate_arrays(film, options->mask != NULL, error)
+    sf_status status = film->parts ? allocate_arrays(film, masked, error)
                                    : sf_fail_memory(error, "a film", sizeof *film->parts);
     if (!status && options->aovs) status = sf_aov_create(options, film, error);
     if (!status) sf_mask_apply(options, film);
@@ -311,6 +311,7 @@ static void describe_options(sf_film *film, const sf_render_options *o) {
     describe(film, "pattern", "%s", sf_pattern_name(o->pattern));
     describe(film, "pixel_filter", "%s", sf_pixel_filter_name(o->pixel_filter));
     describe(film, "stop", "%s", sf_stop_rule_name(o->stop));
+    describe(film, "unbiased", "%s", o->unbiased ? "true" : "false");
     describe(film, "seeds", "%s", sf_seed_policy_name(o->seeds));
     describe(film, "seed", "%" PRIu64, o->seed);
     describe(film, "threads", "%" PRIu32, o->threads);

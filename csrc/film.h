@@ -5,6 +5,8 @@
 #ifndef SUNFLECK_FILM_H
 #define SUNFLECK_FILM_H
 
+#include <stdbool.h>
+
 #include "sunfleck/estimate.h"
 #include "sunfleck/render.h"
 
@@ -31,12 +33,14 @@ typedef struct sf_film_pixel {
     union {
         sf_dyadic dyadic;
         double replicates[SF_REPLICATES - 1]; /* sums of block means; the last follows from the mean */
+        double planned;                       /* of a second set: how many samples it is to have */
     } evidence;
     uint32_t hits;
     float half_width;
     float variance; /* of the mean, at the last look */
     uint8_t look;   /* that was at 16 * 2^look samples; 0: none yet */
     uint8_t reason; /* sf_stop_reason, once it has stopped */
+    uint8_t doubt;  /* 1 where its variance at the last look was raised to a share of its neighbours' */
 } sf_film_pixel;
 
 /* How many samples the pixel took, those that were not finite too. */
@@ -107,7 +111,8 @@ struct sf_film {
 /* What a render's own film is made of, for the checkpoint and for merging. */
 sf_status sf_film_identify(sf_film *film, const sf_scene *scene, sf_isa isa, sf_error *error);
 
-sf_status sf_film_create(const sf_render_options *options, sf_film **film, sf_error *error);
+/* `masked`: with room for a mask, which is the options' where they have one and else still to be filled. */
+sf_status sf_film_create(const sf_render_options *options, bool masked, sf_film **film, sf_error *error);
 
 /* Whether pixel (x, y) of the crop counts: the mask does not leave it out. */
 static inline int sf_film_counts(const sf_film *film, uint32_t x, uint32_t y) {

@@ -52,11 +52,17 @@ static uint64_t hash_mask(const sf_render_options *o) {
 void sf_mask_apply(const sf_render_options *o, sf_film *film) {
     film->counted = (uint64_t)film->crop_width * film->crop_height;
     if (!o->mask) return;
-    film->counted = count_traced(o);
     film->mask_hash = hash_mask(o);
     for (uint32_t y = 0; y < film->crop_height; ++y)
         for (uint32_t x = 0; x < film->crop_width; ++x)
             film->mask[(size_t)y * film->crop_width + x] = traced(o, x + film->crop_x0, y + film->crop_y0);
+    sf_mask_count(film);
+}
+
+void sf_mask_count(sf_film *film) {
+    film->counted = 0;
+    for (uint32_t y = 0; y < film->crop_height; ++y)
+        for (uint32_t x = 0; x < film->crop_width; ++x) film->counted += (uint64_t)sf_film_counts(film, x, y);
 }
 
 void sf_mask_describe(const sf_film *film, char text[SF_MASK_TEXT_SIZE]) {

@@ -20,6 +20,9 @@ bool sf_mask_touches_cell(const sf_render_options *options, uint32_t x, uint32_t
 /* Copies the crop's part of the mask into the film, and counts its pixels. */
 void sf_mask_apply(const sf_render_options *options, sf_film *film);
 
+/* Counts the pixels of the film's mask. */
+void sf_mask_count(sf_film *film);
+
 /* Writes "none", or how many pixels of the crop the mask leaves and a hash of it. */
 #define SF_MASK_TEXT_SIZE 64
 void sf_mask_describe(const sf_film *film, char text[SF_MASK_TEXT_SIZE]);

@@ -40,6 +40,8 @@ static sf_status check_alike(const sf_film *a, const sf_film *b, size_t i, sf_er
     if (p->pixel_filter != q->pixel_filter)
         return refuse(i, "pixel_filter", sf_pixel_filter_name(p->pixel_filter), sf_pixel_filter_name(q->pixel_filter),
                       error);
+    if (!p->unbiased != !q->unbiased)
+        return refuse(i, "unbiased", p->unbiased ? "true" : "false", q->unbiased ? "true" : "false", error);
     if (p->stop != q->stop) return refuse(i, "stop", sf_stop_rule_name(p->stop), sf_stop_rule_name(q->stop), error);
     return SF_STATUS_OK;
 }
@@ -180,7 +182,7 @@ sf_status sf_film_merge(const sf_film *const *films, size_t count, sf_film **mer
     sf_status status = check_films(films, count, error);
     if (status) return status;
     sf_render_options options = merged_options(films, count);
-    status = sf_film_create(&options, &film, error);
+    status = sf_film_create(&options, false, &film, error);
     if (!status) status = gather_parts(film, films, count, error);
     if (!status) gather_summaries(film, films, count);
     if (!status) status = merge_pixels(film, films, count, error);

@@ -79,22 +79,23 @@ static sf_status prepare(sf_rounds *r, sf_error *error) {
     const sf_scene *scene = r->context.scene;
     const sf_render_options *o = &r->options;
     sf_status status = sf_coordinates_init(&r->context.coordinates, o->pattern, &scene->plan, o->spp, o->seed, error);
-    if (!status) status = sf_film_create(o, &r->film, error);
+    if (!status) status = sf_film_create(o, o->mask != NULL, &r->film, error);
     r->context.aovs = o->aovs;
     if (!status) status = lay_out_cells(r, error);
     if (!status) status = hire_workers(r, error);
     if (status) return status;
     r->region = sf_rounds_count(r, r->open);
-    if (o->samples && o->samples < r->region)
+    if (o->samples && sf_rounds_budget(r) < r->region)
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
-                       "samples is %" PRIu64 "; at least one for each of %" PRIu64 " pixels is allowed", o->samples,
-                       r->region);
+                       "samples is %" PRIu64 "; at least %s for each of %" PRIu64 " pixels is allowed", o->samples,
+                       o->unbiased ? "two, with unbiased," : "one", r->region);
     r->context.camera = sf_camera_frame_of(&scene->camera, o->width, o->height);
     r->context.filter = o->pixel_filter;
     r->context.seeds = o->seeds;
     r->context.isa = sf_isa_active();
-    r->z = r->film->factor = sf_stop_factor(o);
-    r->deadline = o->seconds > 0 ? r->start + o->seconds : 0;
+    r->factors = sf_stop_factors_of(o);
+    r->film->factor = r->factors.rule;
+    sf_rounds_set_deadline(r);
     r->progress.pixels = r->film->counted;
     r->progress.expected_samples = o->spp * r->region;
     r->progress.time_limit = o->seconds;
@@ -126,6 +127,7 @@ static void adopt_checkpoint(sf_rounds *r, const sf_round_state *state, bool ext
     r->look = state->look;
     r->target = state->target;
     r->in_lap = state->in_lap != 0;
+    r->second = state->second != 0;
     r->ahead = furthest(r);
     r->level_fixed = state->level_fixed != 0;
     summary->level = state->level;
@@ -143,7 +145,7 @@ static void adopt_checkpoint(sf_rounds *r, const sf_round_state *state, bool ext
         open_all(r);
         if (r->level_fixed) sf_rounds_set_tolerance(r);
     }
-    r->lap = sf_stop_lap(&r->options, r->look);
+    r->lap = r->second ? (sf_lap){0, 0} : sf_stop_lap(&r->options, r->look);
     sf_rounds_list_tiles(r);
     r->progress.round = summary->rounds;
     r->workers[0].done = (r->region - sf_rounds_count(r, r->open)) * r->progress.pixels / r->region;
@@ -156,7 +158,7 @@ static sf_status resume(sf_rounds *r, sf_error *error) {
     sf_resume kind;
     sf_status status = sf_checkpoint_restore(&checkpoint, path, &kind, error);
     if (!status && kind != SF_RESUME_NONE) adopt_checkpoint(r, &checkpoint.state, kind == SF_RESUME_EXTENDED);
-    r->deadline = r->options.seconds > 0 ? r->start + r->options.seconds : 0;
+    sf_rounds_set_deadline(r);
     r->checkpoint_due = sf_seconds_now() + r->options.checkpoint_seconds;
     return status;
 }

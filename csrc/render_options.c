@@ -82,6 +82,9 @@ static sf_status check_budget(sf_render_options *o, sf_error *error) {
                        "samples is %" PRIu64
                        " beside spp or a tolerance; a budget of samples stands alone or with seconds",
                        o->samples);
+    if (o->spp && o->unbiased)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                       "spp is %u and unbiased is set too; a fixed count is unbiased already: give one", o->spp);
     if (!o->spp && !tolerance && !o->samples && !(o->seconds > 0)) o->relative_tolerance = 0.01;
     return SF_STATUS_OK;
 }
@@ -120,9 +123,6 @@ static sf_status check_checkpoint(const sf_render_options *o, sf_error *error) {
     if (!(o->checkpoint_seconds >= 0 && o->checkpoint_seconds <= 1e9))
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "checkpoint_seconds is %g; it must be in [0, 1e9]",
                        o->checkpoint_seconds);
-    if (o->checkpoint_path && (o->aovs || o->mask))
-        return sf_fail(error, SF_STATUS_UNSUPPORTED,
-                       "checkpoint goes with neither aovs nor a mask: the file holds neither");
     if (o->checkpoint_path && !*o->checkpoint_path)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "checkpoint is an empty path; give a file's");
     if (o->checkpoint_path && o->seeds != SF_SEEDS_PIXEL)

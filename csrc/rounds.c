@@ -3,6 +3,8 @@
 
 #include "rounds.h"
 
+#include "aov.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -59,7 +61,8 @@ static void save_checkpoint(sf_rounds *r) {
                                         .tolerance = summary->tolerance,
                                         .target = r->target,
                                         .seconds = sf_seconds_now() - r->start,
-                                        .traced_samples = sf_rounds_samples(r)};
+                                        .traced_samples = sf_rounds_samples(r),
+                                        .second = r->second};
     r->checkpoint_status = sf_checkpoint_save(&checkpoint, o->checkpoint_path, &r->checkpoint_error);
     if (r->checkpoint_status && o->notice) o->notice(r->checkpoint_error.message, o->notice_user);
     r->checkpoint_due = sf_seconds_now() + o->checkpoint_seconds;
@@ -104,22 +107,37 @@ static sf_stop_reason unmet_reason(const sf_rounds *r, bool full, size_t state) 
     return state == SF_INTERRUPTED ? SF_STOP_INTERRUPTED : SF_STOP_MAX_SAMPLES; /* a budget of samples is spent */
 }
 
+/* Whether the pixel's second set is done; half-width and reason are the pilot's, but where it is not. */
+static bool decide_second(const sf_rounds *r, sf_film_pixel *pixel, size_t state) {
+    bool full = sf_stop_second_is_full(pixel);
+    if (!full && state == SF_RUNNING) return false;
+    if (sf_film_taken(pixel) == 0) pixel->reason = 0; /* to be told as untouched */
+    if (!full && sf_film_taken(pixel)) {
+        pixel->half_width = sf_film_half_width(pixel, sf_normal_factor(r->options.confidence));
+        pixel->reason = (uint8_t)unmet_reason(r, false, state);
+    }
+    if (pixel->moments.nonfinite) pixel->reason = SF_STOP_SUSPICIOUS;
+    return true;
+}
+
 /* Whether the pixel is done, and why. */
 static bool decide_pixel(const sf_rounds *r, uint32_t x, uint32_t y, size_t state) {
     sf_film_pixel *pixel = r->film->pixels + (size_t)y * r->film->width + x;
     const sf_render_options *o = &r->options;
     const sf_film_summary *summary = &r->film->summary;
+    if (r->second) return decide_second(r, pixel, state);
     bool full = sf_film_taken(pixel) + o->start >= sf_rounds_most(r);
     if (o->start + sf_film_taken(pixel) > r->to && state == SF_RUNNING)
         return false;                                                  /* decided here before, by an easier tolerance */
     if (o->spp && !full && state == SF_RUNNING) return false;          /* nothing to tell before the end */
     if (sf_film_taken(pixel) == 0 && state != SF_RUNNING) return true; /* not a page of it is touched; see close_all */
-    pixel->half_width = sf_stop_half_width(r->film, o, x, y, r->z);
+    pixel->half_width = sf_stop_half_width(r->film, o, x, y, &r->factors);
     bool met = !o->spp && summary->tolerance >= 0 && sf_film_taken(pixel) >= o->min_spp &&
                (double)pixel->half_width <= summary->tolerance;
     if (!met && !full && state == SF_RUNNING) return false;
     sf_stop_reason reason = met ? SF_STOP_MET : unmet_reason(r, full, state);
-    pixel->reason = (uint8_t)(pixel->moments.nonfinite ? SF_STOP_SUSPICIOUS : reason);
+    bool doubted = pixel->doubt && (reason == SF_STOP_MAX_SAMPLES || reason == SF_STOP_OUT_OF_TIME);
+    pixel->reason = (uint8_t)(pixel->moments.nonfinite || doubted ? SF_STOP_SUSPICIOUS : reason);
     return true;
 }
 
@@ -216,7 +234,8 @@ static void run_round(sf_rounds *r) {
     if (sf_atomic_load(&r->state) != SF_RUNNING || checkpoint_is_due(r)) save_checkpoint(r);
 }
 
-void sf_rounds_run(sf_rounds *r) {
+/* Laps until no pixel is open, or the state is no longer running; closes the rest. */
+static void run_stage(sf_rounds *r) {
     while (sf_atomic_load(&r->state) == SF_RUNNING) {
         if (!r->in_lap && !sf_rounds_begin_lap(r)) {
             r->in_lap = false;
@@ -226,5 +245,40 @@ void sf_rounds_run(sf_rounds *r) {
         run_round(r);
     }
     close_all(r);
+}
+
+/* From the pilot to the second set: every pixel is to have as many samples again, and begins anew. */
+static void begin_second(sf_rounds *r) {
+    sf_film *film = r->film;
+    for (uint32_t cell = 0; cell < sf_rounds_cell_count(r); ++cell) {
+        for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m) {
+            uint32_t x = sf_rounds_x(r, cell, m), y = sf_rounds_y(r, cell, m);
+            if (x >= film->width || y >= film->height) continue;
+            sf_film_pixel *pixel = film->pixels + (size_t)y * film->width + x;
+            uint64_t planned = sf_film_taken(pixel);
+            if (planned == 0) continue;
+            memset(&pixel->moments, 0, sizeof pixel->moments);
+            memset(&pixel->evidence, 0, sizeof pixel->evidence);
+            pixel->hits = 0;
+            pixel->evidence.planned = (double)planned;
+            r->open[cell] |= UINT64_C(1) << m;
+        }
+    }
+    if (film->aovs) sf_aov_reset(film);
+    for (uint32_t i = 0; i < r->options.threads; ++i) r->workers[i].done = r->workers[i].met = 0;
+    r->second = true;
+    r->from = r->to = r->ahead = 0;
+    r->in_lap = false;
+    sf_rounds_set_deadline(r);
+    sf_atomic_store(&r->state, SF_RUNNING);
+}
+
+void sf_rounds_run(sf_rounds *r) {
+    bool pilot = r->options.unbiased && !r->second;
+    run_stage(r);
+    if (pilot && r->sampled != SF_INTERRUPTED) {
+        begin_second(r);
+        run_stage(r);
+    }
     if (r->film->summary.tolerance < 0) r->film->summary.tolerance = 0;
 }

@@ -59,7 +59,8 @@ typedef struct sf_rounds {
     sf_lap lap;
     double target; /* of a budget: half-widths beyond it are to be lowered */
     bool level_fixed;
-    double z; /* standard errors in a half-width */
+    sf_stop_factors factors; /* standard errors in a half-width */
+    bool second;             /* the pilot is over: the set that the picture shows is taken */
     double start, deadline;
     sf_progress progress;
     sf_atomic_size state;
@@ -134,6 +135,17 @@ bool sf_rounds_begin_lap(sf_rounds *r);
 
 /* What a checkpoint of the render holds, but for its state. */
 sf_checkpoint sf_rounds_checkpoint(sf_rounds *r);
+
+/* The budget of samples of the stage at work: a pilot has half. */
+static inline uint64_t sf_rounds_budget(const sf_rounds *r) {
+    return r->options.unbiased && !r->second ? r->options.samples / 2 : r->options.samples;
+}
+
+/* Sets the deadline: a pilot has half of the time. */
+static inline void sf_rounds_set_deadline(sf_rounds *r) {
+    double seconds = r->options.unbiased && !r->second ? r->options.seconds / 2 : r->options.seconds;
+    r->deadline = r->options.seconds > 0 ? r->start + seconds : 0;
+}
 
 /* Paths traced so far. */
 uint64_t sf_rounds_samples(const sf_rounds *r);

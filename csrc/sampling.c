@@ -6,6 +6,9 @@
 #include "aov.h"
 #include "rounds.h"
 
+/* What tells the keys of a second set from the pilot's, and from replicates', which are 1 to 8. */
+#define SECOND_SET (UINT64_C(1) << 32)
+
 /* Adds the block to its pixel's statistics, and to what the stopping rule keeps. */
 static void add_block(sf_rounds *r, const sf_block *block, const sf_block_statistics *statistics) {
     sf_film_pixel *pixel = r->film->pixels + block->pixel;
@@ -15,7 +18,7 @@ static void add_block(sf_rounds *r, const sf_block *block, const sf_block_statis
     sf_film_add(pixel, statistics);
     double mean = sf_film_level_of(&statistics->moments);
     if (r->lap.levels) sf_dyadic_add(&pixel->evidence.dyadic, mean, block->number, r->lap);
-    if (r->options.stop == SF_STOP_REPLICATES && block->number % SF_REPLICATES < SF_REPLICATES - 1)
+    if (r->options.stop == SF_STOP_REPLICATES && !r->second && block->number % SF_REPLICATES < SF_REPLICATES - 1)
         pixel->evidence.replicates[block->number % SF_REPLICATES] += mean;
 }
 
@@ -73,6 +76,7 @@ static void choose_keys(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell, u
         uint64_t x = sf_rounds_x(r, cell, m) + r->film->x0, y = sf_rounds_y(r, cell, m) + r->film->y0;
         keys[m] = r->options.seeds == SF_SEEDS_PIXEL ? sf_hash64(r->options.seed, y << 32 | x)
                                                      : sf_rng_next_raw(&worker->stream);
+        if (r->second) keys[m] = sf_hash64(keys[m], SECOND_SET);
     }
 }
 

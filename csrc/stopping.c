@@ -12,8 +12,10 @@
 #define FIRST_REPLICATES 128u /* a block for each of eight */
 
 /* What the averaged variance is multiplied by: pixels whose estimate came out low are the ones
- * that stop. Measured, bench/coverage.py: 1.0 leaves 92 % coverage on the Cornell box, 1.4 95 %. */
-#define SAFETY 1.4
+ * that stop. Measured, bench/coverage.py: 1.0 leaves 92 % coverage on the Cornell box, 1.38 95 %. */
+#define SAFETY 1.38
+
+#define LEAST_SHARE 0.25f /* of the mean variance of its pool, that a pixel has where light is rare */
 
 /* ---- looks ---- */
 
@@ -145,22 +147,53 @@ static float predict_variance(const sf_dyadic *d, unsigned levels, float decay) 
     return sum / ((decay - 1) * (float)((1u << levels) - 1));
 }
 
+/* What a pool comes to at a look. */
+typedef struct pool_sums {
+    double squares[LEVELS]; /* over the pixels looked at */
+    double looked_at;
+    double variance, power; /* of a sample of (R+G+B)/3, and squared means: over all pixels */
+} pool_sums;
+
+static void add_pixel(pool_sums *sums, const sf_film_pixel *pixel, uint32_t look, unsigned levels) {
+    double level = sf_film_level_of(&pixel->moments);
+    if (pixel->moments.count == 0) return;
+    sums->variance += sf_vector_moments_variance(&pixel->moments) / 3; /* an upper bound; exact for greys */
+    sums->power += level * level;
+    if (sf_film_taken(pixel) != look) return;
+    for (unsigned j = 0; j < levels; ++j) sums->squares[j] += (double)pixel->evidence.dyadic.squares[j];
+    ++sums->looked_at;
+}
+
+static pool_sums sum_pool(const sf_film *film, pool_range range, uint32_t look, unsigned levels) {
+    pool_sums sums = {.looked_at = 0};
+    for (uint32_t y = range.y0; y < range.y1; ++y)
+        for (uint32_t x = range.x0; x < range.x1; ++x)
+            add_pixel(&sums, film->pixels + (size_t)y * film->width + x, look, levels);
+    return sums;
+}
+
+/* The least variance that a pixel of the pool is believed to have: a share of their mean where light
+ * is rare. */
+static float least_variance(const pool_sums *sums, unsigned levels, float decay) {
+    if (!(sums->variance > SF_HEAVY_TAIL * sums->power) || sums->looked_at == 0) return 0;
+    sf_dyadic mean;
+    for (unsigned j = 0; j < levels; ++j) mean.squares[j] = (float)(sums->squares[j] / sums->looked_at);
+    return LEAST_SHARE * predict_variance(&mean, levels, decay);
+}
+
 void sf_stop_look_at_pool(sf_film *film, uint32_t pool, uint32_t look, sf_lap lap) {
     pool_range range = range_of(film, pool);
-    double squares[LEVELS] = {0};
-    for (uint32_t y = range.y0; y < range.y1; ++y)
-        for (uint32_t x = range.x0; x < range.x1; ++x) {
-            const sf_film_pixel *pixel = film->pixels + (size_t)y * film->width + x;
-            if (sf_film_taken(pixel) != look) continue;
-            for (unsigned j = 0; j < lap.levels; ++j) squares[j] += (double)pixel->evidence.dyadic.squares[j];
-        }
-    float decay = film->decay[pool] = fit_decay(squares, lap.levels);
+    pool_sums sums = sum_pool(film, range, look, lap.levels);
+    float decay = film->decay[pool] = fit_decay(sums.squares, lap.levels);
+    float least = least_variance(&sums, lap.levels, decay);
     for (uint32_t y = range.y0; y < range.y1; ++y)
         for (uint32_t x = range.x0; x < range.x1; ++x) {
             sf_film_pixel *pixel = film->pixels + (size_t)y * film->width + x;
             if (sf_film_taken(pixel) != look) continue;
+            float variance = predict_variance(&pixel->evidence.dyadic, lap.levels, decay);
             pixel->look = (uint8_t)(lap.levels + lap.unit_shift);
-            pixel->variance = predict_variance(&pixel->evidence.dyadic, lap.levels, decay);
+            pixel->doubt = variance < least;
+            pixel->variance = pixel->doubt ? least : variance;
         }
 }
 
@@ -212,17 +245,24 @@ static float replicates_half_width(const sf_film_pixel *pixel, double factor) {
     return (float)(factor * sqrt(variance));
 }
 
-double sf_stop_factor(const sf_render_options *o) {
-    if (o->stop == SF_STOP_REPLICATES) return sf_student_t_factor(o->confidence, SF_REPLICATES - 1);
-    return sf_normal_factor(o->confidence);
+/* The variance of a pixel is told from the differences of nine: nine for each pair. Student's t of as
+ * many degrees of freedom stands for what is not known of it. */
+sf_stop_factors sf_stop_factors_of(const sf_render_options *o) {
+    sf_stop_factors factors = {.rule = sf_normal_factor(o->confidence)};
+    if (o->stop == SF_STOP_REPLICATES) factors.rule = sf_student_t_factor(o->confidence, SF_REPLICATES - 1);
+    for (unsigned levels = 1; levels <= LEVELS; ++levels)
+        factors.by_levels[levels] = sf_student_t_factor(o->confidence, 9.0 * ((1u << levels) - 1)) * sqrt(SAFETY);
+    return factors;
 }
 
-float sf_stop_half_width(const sf_film *film, const sf_render_options *o, uint32_t x, uint32_t y, double z) {
+float sf_stop_half_width(const sf_film *film, const sf_render_options *o, uint32_t x, uint32_t y,
+                         const sf_stop_factors *factors) {
     const sf_film_pixel *pixel = film->pixels + (size_t)y * film->width + x;
     if (o->stop == SF_STOP_REPLICATES && sf_stop_is_look(o, (uint32_t)sf_film_taken(pixel)))
-        return replicates_half_width(pixel, z);
-    if (o->stop != SF_STOP_DYADIC || !pixel->look) return sf_film_half_width(pixel, z);
-    double half_width = z * sqrt(SAFETY * (double)pooled_variance(film, x, y));
+        return replicates_half_width(pixel, factors->rule);
+    if (o->stop != SF_STOP_DYADIC || !pixel->look) return sf_film_half_width(pixel, factors->rule);
+    unsigned levels = pixel->look < LEVELS ? pixel->look : LEVELS;
+    double half_width = factors->by_levels[levels] * sqrt((double)pooled_variance(film, x, y));
     double least = unseen(film, o, (double)(SF_LANES << pixel->look));
     return (float)(half_width > least ? half_width : least);
 }

@@ -12,6 +12,12 @@
  * within 1 .. 2.5; every level then predicts V(n), and the predictions are averaged in proportion
  * to their pairs, and over the 3 x 3 pixels around.
  *
+ * Where light is rare, pixels that happen to have seen little of it have small differences, and
+ * would stop first. Such places are told by their samples: where, over a pooling cell, the variance
+ * of a sample is beyond SF_HEAVY_TAIL times the square of the mean, no pixel of it is believed to
+ * have less than a quarter of the cell's mean variance. Pixels that were raised so, and do not meet
+ * the tolerance for it, are those that stop as suspicious.
+ *
  * Decisions fall at barriers between rounds, from all pixels' evidence up to there: no bit
  * depends on threads or tiles. */
 #ifndef SUNFLECK_STOPPING_H
@@ -23,6 +29,11 @@
 #include "film.h"
 
 #define SF_POOL_SIZE 16u /* pixels a side of the cells that decay is pooled over */
+
+/* Variance of a sample over the square of the mean from which on a pool's light is rare: that of an
+ * event of probability 1/9. Measured, 32 samples a pixel: three quarters of keyhole's pools are beyond
+ * 15, the largest of penumbra and defocus have 3.6, and 2 of 64 in cornell are beyond 8. */
+#define SF_HEAVY_TAIL 8
 
 /* The samples between two looks: units of 2^unit_shift blocks, paired up over `levels` levels. */
 typedef struct sf_lap {
@@ -46,6 +57,11 @@ bool sf_stop_is_look(const sf_render_options *options, uint32_t n);
 /* The lap that ends with the look at `look` samples. */
 sf_lap sf_stop_lap(const sf_render_options *options, uint32_t look);
 
+/* Whether the pixel has the samples that its second set was to have. */
+static inline bool sf_stop_second_is_full(const sf_film_pixel *pixel) {
+    return (double)sf_film_taken(pixel) >= pixel->evidence.planned;
+}
+
 /* Readies a pixel that has been looked at for the lap after. */
 void sf_dyadic_begin(sf_film_pixel *pixel);
 
@@ -59,11 +75,17 @@ uint32_t sf_stop_pool_count(const sf_film *film);
  * `look`. */
 void sf_stop_look_at_pool(sf_film *film, uint32_t pool, uint32_t look, sf_lap lap);
 
-/* How many standard errors make the rule's half-width. */
-double sf_stop_factor(const sf_render_options *options);
+/* How many standard errors make the rule's half-width: `rule` where nothing tells how well the
+ * variance is known; under dyadic, `by_levels` by the levels of differences at the last look. */
+typedef struct sf_stop_factors {
+    double rule;
+    double by_levels[SF_DYADIC_LEVELS + 1];
+} sf_stop_factors;
+sf_stop_factors sf_stop_factors_of(const sf_render_options *options);
 
-/* The half-width of pixel (x, y) of the film by the rule; z is sf_stop_factor's. To be called when all pools have been
+/* The half-width of pixel (x, y) of the film by the rule. To be called when all pools have been
  * looked at. Infinity where fewer than two samples were taken. */
-float sf_stop_half_width(const sf_film *film, const sf_render_options *options, uint32_t x, uint32_t y, double z);
+float sf_stop_half_width(const sf_film *film, const sf_render_options *options, uint32_t x, uint32_t y,
+                         const sf_stop_factors *factors);
 
 #endif

@@ -187,7 +187,7 @@ void set_mask(sf_render_options &options, const pixel_mask &mask) {
 film_handle *render(const scene_handle &scene, uint32_t width, uint32_t height, std::array<uint32_t, 4> crop,
                     uint32_t spp, uint32_t start, double relative_tolerance, double absolute_tolerance,
                     double confidence, uint32_t min_spp, uint32_t max_spp, uint64_t samples, double seconds,
-                    const std::string &pattern, const std::string &pixel_filter, const std::string &stop,
+                    const std::string &pattern, const std::string &pixel_filter, const std::string &stop, bool unbiased,
                     const std::string &seeds, uint64_t seed, uint32_t threads, uint32_t tile_size,
                     const std::vector<std::string> &aovs, std::optional<pixel_mask> mask,
                     const std::optional<std::string> &checkpoint, double checkpoint_seconds, nb::object notice,
@@ -209,6 +209,7 @@ film_handle *render(const scene_handle &scene, uint32_t width, uint32_t height, 
     options.pattern = find_pattern(pattern);
     options.pixel_filter = find("pixel_filter", pixel_filter, sf_pixel_filter_name);
     options.stop = find("stop", stop, sf_stop_rule_name);
+    options.unbiased = unbiased;
     options.seeds = find("seeds", seeds, sf_seed_policy_name);
     options.seed = seed;
     options.threads = threads;
@@ -288,8 +289,8 @@ void bind_render(nb::module_ &m) {
 
     m.def("render", &render, nb::rv_policy::take_ownership, "scene"_a, nb::kw_only(), "width"_a, "height"_a, "crop"_a,
           "spp"_a, "start"_a, "relative_tolerance"_a, "absolute_tolerance"_a, "confidence"_a, "min_spp"_a, "max_spp"_a,
-          "samples"_a, "seconds"_a, "pattern"_a, "pixel_filter"_a, "stop"_a, "seeds"_a, "seed"_a, "threads"_a,
-          "tile_size"_a, "aovs"_a, "mask"_a.none(), "checkpoint"_a.none(), "checkpoint_seconds"_a, "notice"_a,
+          "samples"_a, "seconds"_a, "pattern"_a, "pixel_filter"_a, "stop"_a, "unbiased"_a, "seeds"_a, "seed"_a,
+          "threads"_a, "tile_size"_a, "aovs"_a, "mask"_a.none(), "checkpoint"_a.none(), "checkpoint_seconds"_a, "notice"_a,
           "progress"_a.none());
     m.def("load_film", &load_film, nb::rv_policy::take_ownership, "path"_a);
     m.def("merge_films", &merge_films, nb::rv_policy::take_ownership, "films"_a);

@@ -103,6 +103,7 @@ def _add_render(commands: argparse._SubParsersAction[_Parser]) -> None:
     add("--pattern", default="sobol", metavar="NAME", help=f"{', '.join(sf.PATTERNS)}; default sobol")
     add("--pixel-filter", default="box", metavar="NAME", help="box, tent, gaussian; default box")
     add("--stop", default="dyadic", metavar="RULE", help="dyadic, replicates or standard-error; default dyadic")
+    add("--unbiased", action="store_true", help="a pilot decides the counts, a second set is shown; costs twice")
     add("--seeds", default="pixel", metavar="POLICY", help="pixel, thread, shared; default pixel")
     add("--seed", type=int, default=0, metavar="N", help="default 0")
 
@@ -208,6 +209,7 @@ def _rendered(given: argparse.Namespace) -> sf.Image:
         pattern=given.pattern,
         pixel_filter=given.pixel_filter,
         stop=given.stop,
+        unbiased=given.unbiased,
         seeds=given.seeds,
         seed=given.seed,
         threads=given.threads,

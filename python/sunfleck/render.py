@@ -335,6 +335,7 @@ def render(
     pattern: str = "sobol",
     pixel_filter: str = "box",
     stop: str = "dyadic",
+    unbiased: bool = False,
     seeds: str = "pixel",
     seed: int = 0,
     threads: int | None = None,
@@ -379,6 +380,11 @@ def render(
         neighbours; it looks at 32, 64, 128, … samples. "replicates": eight independent copies of
         the pattern and Student's t, at 128, 256, … samples. "standard-error": the classic
         z·s/√N, which takes a pattern's points for independent.
+    unbiased : bool
+        Two stages: a pilot decides each pixel's count by the rule, and gives half-width and stop
+        reason; then a second, independent set of as many samples is averaged. It ends a bias of
+        rules that stop on the samples they average, and costs as much again: of ``samples`` and
+        ``seconds`` the pilot has half. Not with ``spp``, which has no bias.
     seeds : "pixel", "thread" or "shared"
         How threads come by random numbers: keyed by pixel; a stream for each thread; the same
         stream for all, which repeats their noise and is there to be seen.
@@ -471,6 +477,7 @@ def render(
         "pattern": text("pattern", pattern),
         "pixel_filter": text("pixel_filter", pixel_filter),
         "stop": text("stop", stop),
+        "unbiased": bool(unbiased),
         "seeds": text("seeds", seeds),
         "seed": integer("seed", seed),
         "threads": _count("threads", threads),

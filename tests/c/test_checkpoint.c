@@ -100,8 +100,17 @@ static int stop_at_round(const sf_progress *progress, void *user) { return progr
 
 /* ---- resuming ---- */
 
-/* A fixed count, a tolerance and a budget by the default rule; the two other rules. */
-#define KINDS 5
+#define MASK_SIZE 100
+static const uint8_t *disk_mask(void) {
+    static uint8_t mask[MASK_SIZE * MASK_SIZE];
+    for (int y = 0; y < MASK_SIZE; ++y)
+        for (int x = 0; x < MASK_SIZE; ++x) mask[y * MASK_SIZE + x] = (x - 20) * (x - 20) + (y - 22) * (y - 22) < 300;
+    return mask;
+}
+
+/* A fixed count, a tolerance and a budget by the default rule; the two other rules; two stages, by
+ * tolerance with all AOVs and a mask, and by a budget. */
+#define KINDS 7
 static sf_render_options kind_of_render(int kind) {
     sf_render_options options = options_for(42, kind == 0 ? 400 : 0);
     if (kind == 1) options.relative_tolerance = 0.002;
@@ -112,6 +121,12 @@ static sf_render_options kind_of_render(int kind) {
     if (kind == 3) options.samples = 100 * 42 * 42;
     if (kind == 4) options.stop = SF_STOP_REPLICATES;
     if (kind == 4) options.absolute_tolerance = 0.0005;
+    if (kind == 5) options.relative_tolerance = 0.004;
+    if (kind == 5) options.aovs = (1u << SF_AOV_COUNT) - 1;
+    if (kind == 5) options.mask = disk_mask();
+    if (kind == 5) options.mask_stride = MASK_SIZE;
+    if (kind == 6) options.samples = 150 * 42 * 42;
+    options.unbiased = kind >= 5;
     return options;
 }
 
@@ -728,7 +743,7 @@ static sf_film *empty_film(uint64_t seed) {
     options.crop[2] = options.crop[3] = 1;
     options.seed = seed;
     sf_film *film;
-    assert_ok(sf_film_create(&options, &film, error));
+    assert_ok(sf_film_create(&options, false, &film, error));
     return film;
 }
 

@@ -61,7 +61,9 @@ typedef enum sf_stop_reason {
     SF_STOP_MET,         /* half-width within the tolerance */
     SF_STOP_MAX_SAMPLES, /* max_spp reached first */
     SF_STOP_OUT_OF_TIME, /* the time limit came first */
-    SF_STOP_SUSPICIOUS,  /* samples that were not finite were dropped */
+    SF_STOP_SUSPICIOUS,  /* samples that were not finite were dropped; or, by the rule dyadic, a heavy
+                            tail was seen: light is rare around the pixel, which has seen less of it
+                            than its neighbours, and would have met the tolerance by that alone */
     SF_STOP_INTERRUPTED, /* the caller asked to stop */
     SF_STOP_MASKED,      /* the mask leaves the pixel out */
     SF_STOP_REASON_COUNT
@@ -143,6 +145,13 @@ typedef struct sf_render_options {
     sf_pattern pattern;           /* uniform, random, jittered, halton, sobol (default) */
     sf_pixel_filter pixel_filter; /* default box */
     sf_stop_rule stop;            /* default dyadic */
+    uint32_t unbiased;            /* not 0: two stages (Kirk and Arvo 1991). A pilot decides each pixel's
+                                     count by the rule, and gives half-width and stop reason; a second
+                                     set of as many samples, independent of it, is averaged.
+                                     What the rule stops on is then not what the picture shows, which
+                                     a rule that stops on its own samples biases. Costs as much again:
+                                     of `samples` and `seconds` the pilot has half. Not with spp, which
+                                     is unbiased. Default 0 */
     sf_seed_policy seeds;         /* default pixel */
     uint64_t seed;                /* default 0 */
     uint32_t threads;             /* 1 .. SF_MAX_THREADS; 0: one for each processor (default) */
