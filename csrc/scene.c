@@ -17,6 +17,7 @@
 sf_mesh sf_mesh_default(void) {
     sf_mesh mesh = {0};
     for (int c = 0; c < 3; ++c) mesh.albedo[c] = 0.5f;
+    mesh.material = sf_material_default();
     return mesh;
 }
 
@@ -98,7 +99,8 @@ static sf_status check_mesh(const sf_mesh *mesh, size_t number, sf_error *error)
                            "mesh %zu: triangle %zu has vertex index %u; the mesh has %zu vertices", number, i / 3,
                            mesh->triangles[i], mesh->vertex_count);
     sf_status status = check_color("albedo", mesh->albedo, 1, error);
-    return status ? status : check_color("emission", mesh->emission, RADIANCE_LIMIT, error);
+    if (!status) status = check_color("emission", mesh->emission, RADIANCE_LIMIT, error);
+    return status ? status : sf_material_check(&mesh->material, error);
 }
 
 /* Embree loads the last vertex and the last index triple with 16-byte reads: up to 4 bytes past
@@ -146,6 +148,7 @@ static void survey_mesh(sf_scene_info *info, const sf_mesh *mesh, size_t *degene
     info->hash = hash_bytes(info->hash, mesh->triangles, 12 * mesh->triangle_count);
     info->hash = hash_bytes(info->hash, mesh->albedo, sizeof mesh->albedo);
     info->hash = hash_bytes(info->hash, mesh->emission, sizeof mesh->emission);
+    info->hash = sf_material_hash(info->hash, &mesh->material);
     info->triangle_count += mesh->triangle_count;
     info->degenerate_count += *degenerate;
 }

@@ -88,6 +88,9 @@ struct sf_scene {
 sf_status sf_lights_build(sf_scene *scene, sf_error *error);
 void sf_lights_free(sf_light_table *lights);
 
+/* material.c: takes what decides the picture into the hash: nothing of a diffuse material. */
+uint64_t sf_material_hash(uint64_t hash, const sf_material *material);
+
 /* The plan of a scene whose meshes, lights, camera and background are known. */
 void sf_plan_derive(const sf_scene *scene, sf_plan *plan);
 static inline bool sf_plan_has(const sf_plan *plan, sf_stage stage) { return plan->stages >> stage & 1u; }

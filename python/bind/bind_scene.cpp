@@ -3,13 +3,28 @@
 
 #include "bind_scene.h"
 
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+
 namespace {
 
 using vertex_array = rows_of_three<float>;
 using triangle_array = rows_of_three<uint32_t>;
 
+// Kind, ior, roughness.
+using material_values = std::tuple<std::string, double, double>;
+
+sf_material make_material(const material_values &values) {
+    const auto &[kind, ior, roughness] = values;
+    int k = 0;
+    while (sf_material_kind_name(static_cast<sf_material_kind>(k)) &&
+           kind != sf_material_kind_name(static_cast<sf_material_kind>(k)))
+        ++k;
+    return {static_cast<sf_material_kind>(k), static_cast<float>(ior), static_cast<float>(roughness)};
+}
+
 sf_mesh make_mesh(const vertex_array &vertices, const triangle_array &triangles, const vector3 &albedo,
-                  const vector3 &emission) {
+                  const vector3 &emission, const material_values &material) {
     sf_mesh mesh = sf_mesh_default();
     mesh.vertices = vertices.data();
     mesh.vertex_count = vertices.shape(0);
@@ -17,6 +32,7 @@ sf_mesh make_mesh(const vertex_array &vertices, const triangle_array &triangles,
     mesh.triangle_count = triangles.shape(0);
     to_floats(albedo, mesh.albedo);
     to_floats(emission, mesh.emission);
+    mesh.material = make_material(material);
     return mesh;
 }
 
@@ -86,12 +102,20 @@ void bind_scene(nb::module_ &m) {
     // C checks a mesh or a camera when a scene takes it; a scene of its own is the way to ask early.
     m.def(
         "check_mesh",
-        [](vertex_array vertices, triangle_array triangles, const vector3 &albedo, const vector3 &emission) {
+        [](vertex_array vertices, triangle_array triangles, const vector3 &albedo, const vector3 &emission,
+           const material_values &material) {
             scene_handle scratch;
-            sf_mesh mesh = make_mesh(vertices, triangles, albedo, emission);
+            sf_mesh mesh = make_mesh(vertices, triangles, albedo, emission, material);
             call([&](sf_error *error) { return sf_scene_add_mesh(scratch.scene, &mesh, error); });
         },
-        "vertices"_a.noconvert(), "triangles"_a.noconvert(), "albedo"_a, "emission"_a);
+        "vertices"_a.noconvert(), "triangles"_a.noconvert(), "albedo"_a, "emission"_a, "material"_a);
+    m.def(
+        "check_material",
+        [](const material_values &values) {
+            sf_material material = make_material(values);
+            call([&](sf_error *error) { return sf_material_check(&material, error); });
+        },
+        "material"_a);
     m.def(
         "check_camera",
         [](const vector3 &position, const vector3 &target, const vector3 &up, double vertical_fov,
@@ -107,13 +131,13 @@ void bind_scene(nb::module_ &m) {
         .def(
             "add_mesh",
             [](scene_handle &self, vertex_array vertices, triangle_array triangles, const vector3 &albedo,
-               const vector3 &emission) {
-                sf_mesh mesh = make_mesh(vertices, triangles, albedo, emission);
+               const vector3 &emission, const material_values &material) {
+                sf_mesh mesh = make_mesh(vertices, triangles, albedo, emission, material);
                 call([&](sf_error *error) { return sf_scene_add_mesh(self.scene, &mesh, error); });
             },
             // Embree reads both arrays for as long as the scene lives.
             nb::keep_alive<1, 2>(), nb::keep_alive<1, 3>(), "vertices"_a.noconvert(), "triangles"_a.noconvert(),
-            "albedo"_a, "emission"_a)
+            "albedo"_a, "emission"_a, "material"_a)
         .def(
             "set_camera",
             [](scene_handle &self, const vector3 &position, const vector3 &target, const vector3 &up,

@@ -33,6 +33,7 @@ from sunfleck.estimate import (
 from sunfleck.integrate import Integral, IntegralLook, integrate
 from sunfleck.load import load
 from sunfleck.mapping import MAPPINGS
+from sunfleck.material import Conductor, Dielectric, Mirror
 from sunfleck.points import PATTERNS, SCRAMBLES, points, valid_counts
 from sunfleck.render import AOVS, STOP_REASONS, Image, Progress, Summary, merge, render
 from sunfleck.rng import RNGS, Rng
@@ -66,12 +67,15 @@ __all__ = [
     "Camera",
     "ChannelMoments",
     "CheckpointError",
+    "Conductor",
     "ConfidenceSequence",
+    "Dielectric",
     "Error",
     "Image",
     "Integral",
     "IntegralLook",
     "Mesh",
+    "Mirror",
     "Moments",
     "PiecewiseConstant1D",
     "PiecewiseConstant2D",

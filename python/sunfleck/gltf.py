@@ -208,7 +208,7 @@ class _File:
         triangles: NDArray[Any] = order[rows]
         return triangles
 
-    def _material(self, primitive: dict[str, Any]) -> dict[str, Vector]:
+    def _material(self, primitive: dict[str, Any]) -> dict[str, Any]:
         """Albedo and emission, where the file has them."""
         if "material" not in primitive:
             return {}

@@ -45,7 +45,7 @@ def _decode(data: bytes) -> bytes:
     return data
 
 
-def _colors(material: Any) -> dict[str, Vector]:
+def _colors(material: Any) -> dict[str, Any]:
     """Kd and Ke of an OBJ material, where it has them."""
     values = getattr(material, "kwargs", {})
     colors = {}

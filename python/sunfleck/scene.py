@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sunfleck import _core
 from sunfleck._arguments import Vector, integer, number, vector
+from sunfleck.material import Material, default_albedo, material_values
 
 __all__ = ["Camera", "Mesh", "Plan", "PlanDimensions", "Scene", "SceneInfo"]
 
@@ -53,7 +54,7 @@ def _triangles(value: Any, vertex_count: int) -> NDArray[np.uint32]:
 
 
 class Mesh:
-    """Triangles with one diffuse reflectance and one emission.
+    """Triangles with one material, one reflectance and one emission.
 
     Parameters
     ----------
@@ -63,12 +64,15 @@ class Mesh:
     triangles : array_like, shape (m, 3)
         Vertex indices, each in [0, n). A C-contiguous uint32 array is used in place, other
         integer dtypes are copied once.
-    albedo : tuple of 3 floats
-        Diffuse reflectance, linear RGB, each in [0, 1]. Both sides reflect, with the flat
-        normal of the triangle.
+    albedo : tuple of 3 floats, optional
+        Reflectance, linear RGB, each in [0, 1]: of a diffuse surface, which it is without a
+        ``material`` (both sides reflect, with the flat normal of the triangle), or what the
+        material says. None: 0.5 grey, and 1 for a material.
     emission : tuple of 3 floats
         Radiance, linear RGB, each in [0, 1e18]. Only the side that (v1 - v0) x (v2 - v0)
         points to emits.
+    material : Mirror, Dielectric or Conductor, optional
+        How the surface scatters. None: diffuse.
 
     Raises
     ------
@@ -94,30 +98,37 @@ class Mesh:
     True
     """
 
-    __slots__ = ("albedo", "emission", "triangles", "vertices")
+    __slots__ = ("albedo", "emission", "material", "triangles", "vertices")
 
     vertices: NDArray[np.float32]
     triangles: NDArray[np.uint32]
     albedo: Vector
     emission: Vector
+    material: Material | None
 
     def __init__(
         self,
         vertices: ArrayLike,
         triangles: ArrayLike,
-        albedo: Sequence[float] = (0.5, 0.5, 0.5),
+        albedo: Sequence[float] | None = None,
         emission: Sequence[float] = (0.0, 0.0, 0.0),
+        material: Material | None = None,
     ) -> None:
         self.vertices = _vertices(vertices)
         self.triangles = _triangles(triangles, len(self.vertices))
-        self.albedo = vector("albedo", albedo)
+        self.material = material
+        self.albedo = default_albedo(material) if albedo is None else vector("albedo", albedo)
         self.emission = vector("emission", emission)
-        _core.check_mesh(self.vertices, self.triangles, self.albedo, self.emission)
+        _core.check_mesh(*self._values())
+
+    def _values(self) -> tuple[NDArray[np.float32], NDArray[np.uint32], Vector, Vector, tuple[str, float, float]]:
+        return self.vertices, self.triangles, self.albedo, self.emission, material_values(self.material)
 
     def __repr__(self) -> str:
         return (
             f"Mesh({len(self.vertices)} vertices, {len(self.triangles)} triangles, "
-            f"albedo={self.albedo}, emission={self.emission})"
+            f"albedo={self.albedo}, emission={self.emission}"
+            + (")" if self.material is None else f", material={self.material})")
         )
 
 
@@ -317,7 +328,7 @@ class Scene:
         self._background = vector("background", background)
         self._core = _core.Scene()
         for mesh in self._meshes:
-            self._core.add_mesh(mesh.vertices, mesh.triangles, mesh.albedo, mesh.emission)
+            self._core.add_mesh(*mesh._values())
         self._core.set_camera(*camera._values())
         self._core.set_background(self._background)
         self._max_bounces = integer("max_bounces", max_bounces, bits=32)

@@ -12,6 +12,7 @@
 #define SUNFLECK_SCENE_H
 
 #include "sunfleck/base.h"
+#include "sunfleck/material.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -19,7 +20,7 @@ extern "C" {
 
 typedef struct sf_scene sf_scene;
 
-/* A triangle mesh with one diffuse reflectance and one emission.
+/* A triangle mesh with one material, one reflectance and one emission.
  *
  * The arrays stay the caller's: they must neither change nor go before the scene is destroyed.
  * Embree reads them in place. It may read 4 bytes past the last vertex; where those could lie
@@ -30,12 +31,13 @@ typedef struct sf_mesh {
     size_t vertex_count;       /* 3 .. 2^32 - 1 */
     const uint32_t *triangles; /* triangle_count * 3, each < vertex_count */
     size_t triangle_count;     /* 1 .. 2^32 - 1 */
-    float albedo[3];           /* diffuse reflectance, each in [0, 1]; default 0.5; both sides reflect */
+    float albedo[3];           /* reflectance, each in [0, 1]; default 0.5; what it means, the material says */
     float emission[3];         /* radiance, each in [0, 1e18]; default 0; only the side that
                                   (v1 - v0) x (v2 - v0) points to emits */
+    sf_material material;      /* default diffuse, which reflects on both sides */
 } sf_mesh;
 
-/* A mesh without arrays, albedo 0.5, no emission. */
+/* A mesh without arrays, diffuse, albedo 0.5, no emission. */
 sf_mesh sf_mesh_default(void);
 
 /* A pinhole camera, or a thin lens where aperture_radius > 0. Row 0 of the image is the top,
