@@ -70,6 +70,7 @@ typedef struct sf_batch {
     sf_block blocks[SF_BLOCKS];
     sf_block_statistics statistics[SF_BLOCKS];
     uint32_t block_count;
+    uint32_t primitive[SF_PATHS]; /* of the mesh that was hit; with SF_STAGE_LIGHT_SHAPES alone */
     struct sf_hit_sums *hit_sums; /* by block; NULL where no AOV asks for the first hits */
 } sf_batch;
 
