@@ -23,7 +23,7 @@ typedef struct run {
     const sf_shade_kernels *shade;
     const sf_light_kernels *light;
     const sf_light_shape_kernels *shapes;
-    bool special; /* light is sampled, or weighted, in more ways than the plainest */
+    bool special;   /* light is sampled, or weighted, in more ways than the plainest */
     uint32_t group; /* the plan's next group of dimensions */
 } run;
 
@@ -41,8 +41,7 @@ static void next_coordinates(run *r, sf_dimension_use use, float (*out)[SF_PATHS
 static void trace_nearest(run *r, uint32_t packets, const uint32_t *active, sf_coherence coherence) {
     const sf_scene *scene = r->context->scene;
     sf_trace_nearest(r->batch, scene, packets, active, coherence);
-    if (has(r, SF_STAGE_ROUND))
-        sf_round_kernels_at(r->context->isa)->face(r->batch, scene, packets * SF_LANES);
+    if (has(r, SF_STAGE_ROUND)) sf_round_kernels_at(r->context->isa)->face(r->batch, scene, packets * SF_LANES);
 }
 
 static void trace_camera(run *r) {

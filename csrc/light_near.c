@@ -32,8 +32,7 @@ static double triangle_square(const double p[3], double v[3][3]) {
     for (int c = 0; c < 3; ++c) n[c] = e[0][(c + 1) % 3] * e[1][(c + 2) % 3] - e[0][(c + 2) % 3] * e[1][(c + 1) % 3];
     for (int k = 0; k < 3; ++k) {
         double d[3] = {p[0] - v[k][0], p[1] - v[k][1], p[2] - v[k][2]}, side[3];
-        for (int c = 0; c < 3; ++c)
-            side[c] = n[(c + 1) % 3] * e[k][(c + 2) % 3] - n[(c + 2) % 3] * e[k][(c + 1) % 3];
+        for (int c = 0; c < 3; ++c) side[c] = n[(c + 1) % 3] * e[k][(c + 2) % 3] - n[(c + 2) % 3] * e[k][(c + 1) % 3];
         inside &= dot(d, side) >= 0;
         least = fmin(least, segment_square(p, v[k], e[k]));
     }

@@ -26,8 +26,8 @@ typedef struct drawn_lanes {
     SF_ALIGNED(float) s[SF_LANES];
     SF_ALIGNED(float) t[SF_LANES];
     SF_ALIGNED(float) direction[3][SF_LANES];
-    SF_ALIGNED(float) to[3][SF_LANES];    /* to the end of the shadow ray */
-    SF_ALIGNED(float) density[SF_LANES];  /* by solid angle, given the piece; 0 where no light comes */
+    SF_ALIGNED(float) to[3][SF_LANES];       /* to the end of the shadow ray */
+    SF_ALIGNED(float) density[SF_LANES];     /* by solid angle, given the piece; 0 where no light comes */
     SF_ALIGNED(float) radiance[3][SF_LANES]; /* over what the weight of the piece has */
 } drawn_lanes;
 
@@ -71,7 +71,7 @@ static inline void place_flat(float kind, float s, float t, float *alpha, float 
     *beta = triangle ? 1 - root : round ? disk[1] : t;
 }
 
-static void draw_by_area(const shape_lanes *lanes, drawn_lanes *d) {
+static void draw_by_area(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT d) {
     EACH_LANE {
         float alpha, beta, end[3], to[3], along = 0, square = 0;
         place_flat(lanes->field[SF_LIGHT_KIND][l], d->s[l], d->t[l], &alpha, &beta);
@@ -95,7 +95,8 @@ static void draw_by_area(const shape_lanes *lanes, drawn_lanes *d) {
 }
 
 /* Ends a direction to a flat piece on its plane. */
-static inline void end_on_plane(const shape_lanes *lanes, drawn_lanes *d, uint32_t l, const float w[3], float share) {
+static inline void end_on_plane(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT d, uint32_t l,
+                                const float w[3], float share) {
     float height = 0, along = 0, end[3];
     for (int c = 0; c < 3; ++c) {
         float normal = lanes->field[SF_LIGHT_NORMAL_X + c][l];
@@ -112,7 +113,7 @@ static inline void end_on_plane(const shape_lanes *lanes, drawn_lanes *d, uint32
     d->density[l] = (height > 0) & (along > 0) & (share > 0) ? 0.25f / (SF_PI_F * share) : 0.0f;
 }
 
-static inline void corners_of(const shape_lanes *lanes, uint32_t l, float a[3], float b[3], float c[3]) {
+static inline void corners_of(const shape_lanes *SF_RESTRICT lanes, uint32_t l, float a[3], float b[3], float c[3]) {
     for (int k = 0; k < 3; ++k) {
         a[k] = lanes->field[SF_LIGHT_ORIGIN_X + k][l];
         b[k] = a[k] + lanes->field[SF_LIGHT_EDGE1_X + k][l];
@@ -120,7 +121,7 @@ static inline void corners_of(const shape_lanes *lanes, uint32_t l, float a[3], 
     }
 }
 
-static void draw_triangles(const shape_lanes *lanes, drawn_lanes *d) {
+static void draw_triangles(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT d) {
     SF_ALIGNED(float) w[3][SF_LANES], share[SF_LANES];
     EACH_LANE {
         float a[3], b[3], c[3], direction[3];
@@ -138,7 +139,7 @@ static void draw_triangles(const shape_lanes *lanes, drawn_lanes *d) {
     }
 }
 
-static void draw_rectangles(const shape_lanes *lanes, drawn_lanes *d) {
+static void draw_rectangles(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT d) {
     SF_ALIGNED(float) w[3][SF_LANES], share[SF_LANES];
     EACH_LANE {
         float a[3], b[3], c[3], direction[3];
@@ -160,7 +161,7 @@ static void draw_rectangles(const shape_lanes *lanes, drawn_lanes *d) {
 
 /* What a sphere is from a point: the unit vector to its middle, the distance, and the height of its
  * cone; 0 from inside. */
-static inline float see_sphere(const shape_lanes *lanes, uint32_t l, float axis[3], float *distance) {
+static inline float see_sphere(const shape_lanes *SF_RESTRICT lanes, uint32_t l, float axis[3], float *distance) {
     float square = 0, radius = lanes->field[SF_LIGHT_EDGE1_X][l];
     for (int c = 0; c < 3; ++c) {
         axis[c] = lanes->field[SF_LIGHT_ORIGIN_X + c][l] - lanes->point[c][l];
@@ -176,7 +177,7 @@ static inline float see_sphere(const shape_lanes *lanes, uint32_t l, float axis[
 
 /* A direction of the cone, and where it meets the sphere: by the law of sines, the angle at the
  * middle is asin(D sin theta / r) - theta. */
-static inline void draw_sphere(const shape_lanes *lanes, drawn_lanes *d, uint32_t l) {
+static inline void draw_sphere(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT d, uint32_t l) {
     float axis[3], tangent[3], bitangent[3], local[3], w[3], distance, radius = lanes->field[SF_LIGHT_EDGE1_X][l];
     float height = see_sphere(lanes, l, axis, &distance);
     sf_frame_from_normal(axis, tangent, bitangent);
@@ -201,7 +202,7 @@ static inline void draw_sphere(const shape_lanes *lanes, drawn_lanes *d, uint32_
 /* ---- the sky ---- */
 
 /* The shadow ray leaves the scene. */
-static inline void leave(drawn_lanes *d, uint32_t l, const float w[3], float far, float density) {
+static inline void leave(drawn_lanes *SF_RESTRICT d, uint32_t l, const float w[3], float far, float density) {
     for (int c = 0; c < 3; ++c) {
         d->direction[c][l] = w[c];
         d->to[c][l] = far * w[c];
@@ -209,8 +210,8 @@ static inline void leave(drawn_lanes *d, uint32_t l, const float w[3], float far
     d->density[l] = density;
 }
 
-static inline void draw_sun(const shape_lanes *lanes, drawn_lanes *d, uint32_t l, float far) {
-    const float(*field)[SF_LANES] = lanes->field;
+static inline void draw_sun(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT d, uint32_t l, float far) {
+    const float (*field)[SF_LANES] = lanes->field;
     const float tangent[3] = COPY3(field + SF_LIGHT_EDGE1_X, l), bitangent[3] = COPY3(field + SF_LIGHT_EDGE2_X, l);
     const float pole[3] = COPY3(field + SF_LIGHT_NORMAL_X, l);
     float local[3], w[3], height = field[SF_LIGHT_HEIGHT][l];
@@ -219,14 +220,15 @@ static inline void draw_sun(const shape_lanes *lanes, drawn_lanes *d, uint32_t l
     leave(d, l, w, far, 0.5f / (SF_PI_F * height));
 }
 
-static inline void draw_direction(const shape_lanes *lanes, drawn_lanes *d, uint32_t l, float far) {
+static inline void draw_direction(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT d, uint32_t l,
+                                  float far) {
     const float w[3] = COPY3(lanes->field + SF_LIGHT_NORMAL_X, l);
     leave(d, l, w, far, 1);
 }
 
 /* A pixel in proportion to what comes from it, and a direction uniformly over its solid angle:
  * longitude, and the cosine from the top. */
-static inline void draw_pixel(const sf_sky *sky, drawn_lanes *d, uint32_t l, const float x[2]) {
+static inline void draw_pixel(const sf_sky *sky, drawn_lanes *SF_RESTRICT d, uint32_t l, const float x[2]) {
     const sf_environment *e = &sky->environment;
     float right = x[0] * (float)e->width, down = x[1] * (float)e->height;
     uint32_t column = (uint32_t)right, row = (uint32_t)down;
@@ -235,14 +237,13 @@ static inline void draw_pixel(const sf_sky *sky, drawn_lanes *d, uint32_t l, con
     double up = sky->edges[row] + (double)(down - (float)row) * (sky->edges[row + 1] - sky->edges[row]);
     float ring = (float)sqrt(fmax((1 - up) * (1 + up), 0)), sine, cosine, w[3];
     sf_sincos_2pi(x[0] > 0.5f ? 1.5f - x[0] : 0.5f - x[0], &sine, &cosine);
-    for (int c = 0; c < 3; ++c)
-        w[c] = ring * (cosine * sky->front[c] + sine * sky->left[c]) + (float)up * sky->up[c];
+    for (int c = 0; c < 3; ++c) w[c] = ring * (cosine * sky->front[c] + sine * sky->left[c]) + (float)up * sky->up[c];
     const float *pixel = e->pixels + 3 * ((size_t)row * e->width + column);
     for (int c = 0; c < 3; ++c) d->radiance[c][l] = pixel[c];
     leave(d, l, w, sky->far, (float)(((double)pixel[0] + pixel[1] + pixel[2]) / sky->total));
 }
 
-static void draw_environment(const shape_lanes *lanes, drawn_lanes *d, const sf_sky *sky) {
+static void draw_environment(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT d, const sf_sky *sky) {
     float u[2 * SF_LANES], x[2 * SF_LANES] = {0};
     EACH_LANE {
         bool mine = lanes->way[l] == SF_LIGHT_IS_ENVIRONMENT;
@@ -256,12 +257,13 @@ static void draw_environment(const shape_lanes *lanes, drawn_lanes *d, const sf_
 
 /* ---- light sampled ---- */
 
-static void draw(const shape_lanes *lanes, const sf_sky *sky, drawn_lanes *d) {
+static void draw(const shape_lanes *SF_RESTRICT lanes, const sf_sky *sky, drawn_lanes *SF_RESTRICT d) {
     for (int c = 0; c < 3; ++c) EACH_LANE d->radiance[c][l] = 1;
     if (lanes->ways >> SF_LIGHT_BY_AREA & 1u) draw_by_area(lanes, d);
     if (lanes->ways >> SF_LIGHT_BY_TRIANGLE_ANGLE & 1u) draw_triangles(lanes, d);
     if (lanes->ways >> SF_LIGHT_BY_RECTANGLE_ANGLE & 1u) draw_rectangles(lanes, d);
     if (lanes->ways >> SF_LIGHT_IS_ENVIRONMENT & 1u) draw_environment(lanes, d, sky);
+    if (!(lanes->ways & (1u << SF_LIGHT_IS_SPHERE | 1u << SF_LIGHT_IS_SUN | 1u << SF_LIGHT_IS_DIRECTION))) return;
     EACH_LANE switch (lanes->way[l]) {
         case SF_LIGHT_IS_SPHERE: draw_sphere(lanes, d, l); break;
         case SF_LIGHT_IS_SUN: draw_sun(lanes, d, l, sky->far); break;
@@ -271,57 +273,77 @@ static void draw(const shape_lanes *lanes, const sf_sky *sky, drawn_lanes *d) {
 }
 
 /* What arrives if nothing is in between. A direction without width is found by no other ray. */
-static void connect(sf_batch *b, const shape_lanes *lanes, const drawn_lanes *d, uint32_t first, bool weigh) {
-    EACH_LANE {
-        uint32_t i = first + l;
-        float cosine = d->direction[0][l] * b->normal[0][i] + d->direction[1][l] * b->normal[1][i] +
-                       d->direction[2][l] * b->normal[2][i];
-        float density = d->density[l], area = lanes->field[SF_LIGHT_AREA][l];
-        bool sees = (cosine > 0) & (density > 0);
-        float scale = sees ? cosine / (density * area) : 0.0f, sum = 0;
-        if (weigh && lanes->way[l] != SF_LIGHT_IS_DIRECTION) {
-            float light_pdf = lanes->field[SF_LIGHT_PDF][l] * area * density;
-            scale = sees ? scale * sf_power_weight(light_pdf, cosine * (1.0f / SF_PI_F)) : 0.0f;
+static inline void connect(sf_batch *SF_RESTRICT b, const shape_lanes *SF_RESTRICT lanes,
+                           const drawn_lanes *SF_RESTRICT d, uint32_t first, uint32_t l, bool weigh) {
+    uint32_t i = first + l;
+    float cosine = d->direction[0][l] * b->normal[0][i] + d->direction[1][l] * b->normal[1][i] +
+                   d->direction[2][l] * b->normal[2][i];
+    float density = d->density[l], area = lanes->field[SF_LIGHT_AREA][l];
+    bool sees = (cosine > 0) & (density > 0);
+    float scale = sees ? cosine / (density * area) : 0.0f, sum = 0;
+    if (weigh) {
+        float light_pdf = lanes->field[SF_LIGHT_PDF][l] * area * density;
+        float weight = sf_power_weight(light_pdf, cosine * (1.0f / SF_PI_F));
+        weight = lanes->way[l] == SF_LIGHT_IS_DIRECTION ? 1.0f : weight;
+        scale = sees ? scale * weight : 0.0f;
+    }
+    for (int c = 0; c < 3; ++c) {
+        float value = b->throughput[c][i] * lanes->field[SF_LIGHT_WEIGHT_R + c][l] * d->radiance[c][l] * scale;
+        b->to_light[c][i] = d->to[c][l];
+        b->contribution[c][i] = value;
+        sum += value;
+    }
+    b->alive[i] = sum > 0;
+}
+
+static void connect_packet(sf_batch *SF_RESTRICT b, const shape_lanes *SF_RESTRICT lanes,
+                           const drawn_lanes *SF_RESTRICT d, uint32_t first, bool weigh) {
+    if (weigh)
+        EACH_LANE connect(b, lanes, d, first, l, true);
+    else
+        EACH_LANE connect(b, lanes, d, first, l, false);
+    EACH_LANE b->bin[first + l] = sf_shadow_bin(b->path[first + l], d->s[l], d->t[l]);
+}
+
+/* Lanes past the end hold nothing: they do as the first does. */
+static void take_packet(shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT d, const sf_batch *b,
+                        const sf_light_table *lights, float (*u)[SF_PATHS], uint32_t first, uint32_t count) {
+    if (lights->count > 1) EACH_LANE {
+            uint32_t i = first + l < count ? first + l : first;
+            give_piece(lanes, l, lights->pieces[sf_choose_piece(lights, u[2][i])]);
         }
-        for (int c = 0; c < 3; ++c) {
-            float value = b->throughput[c][i] * lanes->field[SF_LIGHT_WEIGHT_R + c][l] * d->radiance[c][l] * scale;
-            b->to_light[c][i] = d->to[c][l];
-            b->contribution[c][i] = value;
-            sum += value;
-        }
-        b->alive[i] = sum > 0;
-        b->bin[i] = sf_shadow_bin(b->path[i], d->s[l], d->t[l]);
+    memcpy(d->s, u[0] + first, sizeof d->s);
+    memcpy(d->t, u[1] + first, sizeof d->t);
+    for (int c = 0; c < 3; ++c) memcpy(lanes->point[c], b->point[c] + first, sizeof lanes->point[c]);
+    for (uint32_t l = 1; l < SF_LANES; ++l) {
+        if (first + l < count) continue;
+        d->s[l] = d->s[0];
+        d->t[l] = d->t[0];
+        for (int c = 0; c < 3; ++c) lanes->point[c][l] = lanes->point[c][0];
     }
 }
 
 static void light(sf_batch *b, const sf_scene *scene, uint32_t count, bool weigh) {
     const sf_light_table *lights = &scene->lights;
     bool several = lights->count > 1;
-    float(*u)[SF_PATHS] = sf_coordinates_by_ray(b, count, several ? 3 : 2);
+    float (*u)[SF_PATHS] = sf_coordinates_by_ray(b, count, several ? 3 : 2);
     shape_lanes lanes;
     drawn_lanes drawn;
     memset(&drawn, 0, sizeof drawn);
     EACH_LANE give_piece(&lanes, l, lights->pieces[0]);
     for (uint32_t first = 0; first < count; first += SF_LANES) {
-        /* Lanes past the end hold nothing: they do as the first does. */
-        EACH_LANE {
-            uint32_t i = first + l < count ? first + l : first;
-            if (several) give_piece(&lanes, l, lights->pieces[sf_choose_piece(lights, u[2][i])]);
-            drawn.s[l] = u[0][i];
-            drawn.t[l] = u[1][i];
-            for (int c = 0; c < 3; ++c) lanes.point[c][l] = b->point[c][i];
-        }
+        take_packet(&lanes, &drawn, b, lights, u, first, count);
         choose_ways(&lanes);
         draw(&lanes, &scene->sky, &drawn);
-        connect(b, &lanes, &drawn, first, weigh);
+        connect_packet(b, &lanes, &drawn, first, weigh);
     }
 }
 
 /* ---- light found ---- */
 
 /* The density by solid angle with which light sampling finds the point that ray i hit. */
-static void density_of_hits(const sf_batch *b, const shape_lanes *lanes, uint32_t first, const float cosine[SF_LANES],
-                            float *SF_RESTRICT out) {
+static void density_of_hits(const sf_batch *b, const shape_lanes *SF_RESTRICT lanes, uint32_t first,
+                            const float cosine[SF_LANES], float *SF_RESTRICT out) {
     EACH_LANE {
         float square = b->distance[first + l] * b->distance[first + l];
         out[l] = lanes->field[SF_LIGHT_PDF][l] * square / cosine[l];
@@ -342,7 +364,8 @@ static void density_of_hits(const sf_batch *b, const shape_lanes *lanes, uint32_
             corners_of(lanes, l, a, p, q);
             sf_spherical_rectangle_init(&rectangle, a, p, q, point);
             float pdf = lanes->field[SF_LIGHT_PDF][l] * lanes->field[SF_LIGHT_AREA][l];
-            out[l] = lanes->way[l] == SF_LIGHT_BY_RECTANGLE_ANGLE ? pdf * (0.25f / (SF_PI_F * rectangle.share)) : out[l];
+            out[l] =
+                lanes->way[l] == SF_LIGHT_BY_RECTANGLE_ANGLE ? pdf * (0.25f / (SF_PI_F * rectangle.share)) : out[l];
         }
     if (lanes->ways >> SF_LIGHT_IS_SPHERE & 1u) EACH_LANE {
             float axis[3], distance, height = see_sphere(lanes, l, axis, &distance);
@@ -360,27 +383,27 @@ static inline float hit_cosine(const sf_batch *b, uint32_t i) {
 
 /* Which of a packet's rays hit the side of a light that emits, and its emission. */
 static uint32_t list_emitters(sf_batch *b, const sf_scene *scene, uint32_t first, float cosine[SF_LANES]) {
-    float *const *columns = scene->mesh_table.columns;
+    SF_ALIGNED(float) sum[SF_LANES];
     uint32_t emitters = 0;
-    EACH_LANE {
-        uint32_t i = first + l, mesh = b->mesh[i];
-        float sum = 0;
-        for (int c = 0; c < 3; ++c) sum += b->emission[c][i] = columns[SF_MESH_EMISSION_R + c][mesh];
-        cosine[l] = hit_cosine(b, i);
-        emitters |= (uint32_t)((sum > 0) & (cosine[l] > 0)) << l;
+    EACH_LANE sum[l] = 0;
+    for (int c = 0; c < 3; ++c) {
+        const float *column = scene->mesh_table.columns[SF_MESH_EMISSION_R + c];
+        EACH_LANE sum[l] += b->emission[c][first + l] = column[b->mesh[first + l]];
     }
+    EACH_LANE cosine[l] = hit_cosine(b, first + l);
+    EACH_LANE emitters |= (uint32_t)((sum[l] > 0) & (cosine[l] > 0)) << l;
     return emitters;
 }
 
 static void weigh_packet(sf_batch *b, const sf_scene *scene, uint32_t first, uint32_t emitters, sf_found_share share,
                          const float cosine[SF_LANES]) {
     const sf_light_table *lights = &scene->lights;
-    SF_ALIGNED(float) light_pdf[SF_LANES];
+    SF_ALIGNED(float) light_pdf[SF_LANES], weight[SF_LANES];
     EACH_LANE light_pdf[l] = 0;
     if (share == SF_FOUND_WEIGHTED && !lights->special) {
         const float *pdf = scene->mesh_table.columns[SF_MESH_LIGHT_PDF];
         EACH_LANE light_pdf[l] = pdf[b->mesh[first + l]] * b->distance[first + l] * b->distance[first + l] / cosine[l];
-    } else if (share == SF_FOUND_WEIGHTED && emitters) {
+    } else if (share == SF_FOUND_WEIGHTED) {
         shape_lanes lanes;
         EACH_LANE {
             uint32_t i = first + l, piece = 0;
@@ -391,13 +414,15 @@ static void weigh_packet(sf_batch *b, const sf_scene *scene, uint32_t first, uin
         choose_ways(&lanes);
         density_of_hits(b, &lanes, first, cosine, light_pdf);
     }
-    EACH_LANE {
-        uint32_t i = first + l;
-        float weight = sf_found_weight(share, b->pdf[i], light_pdf[l]);
-        bool lit = (emitters >> l & 1u) != 0;
-        for (int c = 0; c < 3; ++c)
-            b->emission[c][i] = lit ? b->throughput[c][i] * b->emission[c][i] * weight : 0.0f;
-    }
+    if (share == SF_FOUND_WEIGHTED)
+        EACH_LANE weight[l] = sf_power_weight(b->pdf[first + l], light_pdf[l]);
+    else
+        EACH_LANE weight[l] = sf_found_weight(share, b->pdf[first + l], 0);
+    EACH_LANE weight[l] = emitters >> l & 1u ? weight[l] : 0.0f;
+    for (int c = 0; c < 3; ++c) EACH_LANE {
+            uint32_t i = first + l;
+            b->emission[c][i] = weight[l] > 0 ? b->throughput[c][i] * b->emission[c][i] * weight[l] : 0.0f;
+        }
 }
 
 static void found(sf_batch *b, const sf_scene *scene, uint32_t count) {
@@ -405,7 +430,10 @@ static void found(sf_batch *b, const sf_scene *scene, uint32_t count) {
     SF_ALIGNED(float) cosine[SF_LANES];
     for (uint32_t first = 0; first < count; first += SF_LANES) {
         uint32_t emitters = list_emitters(b, scene, first, cosine);
-        weigh_packet(b, scene, first, emitters, share, cosine);
+        if (emitters)
+            weigh_packet(b, scene, first, emitters, share, cosine);
+        else
+            for (int c = 0; c < 3; ++c) memset(b->emission[c] + first, 0, SF_LANES * sizeof(float));
     }
     if (!sf_plan_has(&scene->plan, SF_STAGE_MISS)) return;
     for (uint32_t i = 0; i < count; ++i)

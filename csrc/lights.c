@@ -215,8 +215,7 @@ static void write_sky(const sf_scene *scene, float (*pieces)[SF_LIGHT_FIELDS], s
     }
     if (!sky->environment.pixels) return;
     pieces[sky->sun_count][SF_LIGHT_KIND] = (float)SF_LIGHT_IS_ENVIRONMENT;
-    sources[sky->sun_count] =
-        (sf_light_source){.radiance = {1, 1, 1}, .area = 1, .power = sky->total, .sky = true};
+    sources[sky->sun_count] = (sf_light_source){.radiance = {1, 1, 1}, .area = 1, .power = sky->total, .sky = true};
 }
 
 /* Writes the pieces: those of meshes, of spheres and disks, of the sky. */

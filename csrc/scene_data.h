@@ -101,13 +101,13 @@ typedef struct sf_sky_sun {
 typedef struct sf_sky {
     sf_sky_sun *suns;
     size_t sun_count;
-    sf_environment environment;        /* pixels NULL: none */
-    float front[3], left[3], up[3];    /* its frame: longitude 0, 90 degrees, the top */
-    double *edges;                     /* cosines from the top, of its rows' edges: height + 1 */
-    sf_piecewise *table;               /* draws a pixel in proportion to what comes from it */
-    double total;                      /* R + G + B over all solid angles */
-    float pdf;                         /* the probability of the environment among the lights, over total */
-    float far;                         /* farther than any two points of the scene */
+    sf_environment environment;     /* pixels NULL: none */
+    float front[3], left[3], up[3]; /* its frame: longitude 0, 90 degrees, the top */
+    double *edges;                  /* cosines from the top, of its rows' edges: height + 1 */
+    sf_piecewise *table;            /* draws a pixel in proportion to what comes from it */
+    double total;                   /* R + G + B over all solid angles */
+    float pdf;                      /* the probability of the environment among the lights, over total */
+    float far;                      /* farther than any two points of the scene */
 } sf_sky;
 
 /* What a sphere or disk is, by geometry number: middle, radius, normal, kind. */

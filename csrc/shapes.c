@@ -15,16 +15,14 @@ sf_sphere sf_sphere_default(void) {
     return (sf_sphere){.radius = 1, .albedo = {0.5f, 0.5f, 0.5f}, .material = sf_material_default()};
 }
 sf_disk sf_disk_default(void) {
-    return (sf_disk){
-        .normal = {0, 0, 1}, .radius = 1, .albedo = {0.5f, 0.5f, 0.5f}, .material = sf_material_default()};
+    return (sf_disk){.normal = {0, 0, 1}, .radius = 1, .albedo = {0.5f, 0.5f, 0.5f}, .material = sf_material_default()};
 }
 
 /* Makes v as long as 1; refuses one without direction. */
 static sf_status unit_vector(const char *what, const float v[3], float out[3], sf_error *error) {
     double square = 0;
     for (int c = 0; c < 3; ++c) square += (double)v[c] * v[c];
-    if (!(square > 0))
-        return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s is (0, 0, 0), which is no direction", what);
+    if (!(square > 0)) return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s is (0, 0, 0), which is no direction", what);
     for (int c = 0; c < 3; ++c) out[c] = (float)((double)v[c] / sqrt(square));
     return SF_STATUS_OK;
 }
@@ -41,10 +39,11 @@ static sf_status check_round(const char *what, const sf_round *round, const sf_m
 
 static sf_status attach_round(sf_scene *scene, const sf_round *round, uint32_t number, sf_error *error) {
     bool disk = round->kind == SF_ROUND_DISK;
-    RTCGeometry geometry = rtcNewGeometry(
-        scene->device, disk ? RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT : RTC_GEOMETRY_TYPE_SPHERE_POINT);
+    RTCGeometry geometry =
+        rtcNewGeometry(scene->device, disk ? RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT : RTC_GEOMETRY_TYPE_SPHERE_POINT);
     float *vertex = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, 1);
-    float *normal = disk ? rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3, 12, 1) : NULL;
+    float *normal =
+        disk ? rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3, 12, 1) : NULL;
     if (vertex && (normal || !disk)) {
         memcpy(vertex, round->centre, 12);
         vertex[3] = round->radius;

@@ -43,8 +43,8 @@ sf_status sf_scene_add_sun(sf_scene *scene, const sf_sun *sun, sf_error *error) 
     if (!status) status = sf_scene_check_color("sun irradiance", sun->irradiance, SF_RADIANCE_LIMIT, error);
     if (status) return status;
     if (!(sun->angular_radius == 0 || (sun->angular_radius >= 0.01f && sun->angular_radius <= 89)))
-        return sf_fail(error, SF_STATUS_INVALID_VALUE,
-                       "angular_radius is %g degrees; it must be 0 or in [0.01, 89]", (double)sun->angular_radius);
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "angular_radius is %g degrees; it must be 0 or in [0.01, 89]",
+                       (double)sun->angular_radius);
     if (!(sun->irradiance[0] + sun->irradiance[1] + sun->irradiance[2] > 0))
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "sun irradiance is 0; a sun must shine");
     if (scene->info.sun_count == MOST_SUNS)

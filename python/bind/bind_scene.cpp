@@ -175,8 +175,8 @@ void bind_scene(nb::module_ &m) {
         "centre"_a, "radius"_a, "albedo"_a, "emission"_a, "material"_a);
     m.def(
         "check_disk",
-        [](const vector3 &centre, const vector3 &normal, double radius, const vector3 &albedo,
-           const vector3 &emission, const material_values &material) {
+        [](const vector3 &centre, const vector3 &normal, double radius, const vector3 &albedo, const vector3 &emission,
+           const material_values &material) {
             scene_handle scratch;
             sf_disk disk = make_disk(centre, normal, radius, albedo, emission, material);
             call([&](sf_error *error) { return sf_scene_add_disk(scratch.scene, &disk, error); });
@@ -222,16 +222,16 @@ void bind_scene(nb::module_ &m) {
             "albedo"_a, "emission"_a, "material"_a)
         .def(
             "add_sphere",
-            [](scene_handle &self, const vector3 &centre, double radius, const vector3 &albedo,
-               const vector3 &emission, const material_values &material) {
+            [](scene_handle &self, const vector3 &centre, double radius, const vector3 &albedo, const vector3 &emission,
+               const material_values &material) {
                 sf_sphere sphere = make_sphere(centre, radius, albedo, emission, material);
                 call([&](sf_error *error) { return sf_scene_add_sphere(self.scene, &sphere, error); });
             },
             "centre"_a, "radius"_a, "albedo"_a, "emission"_a, "material"_a)
         .def(
             "add_disk",
-            [](scene_handle &self, const vector3 &centre, const vector3 &normal, double radius,
-               const vector3 &albedo, const vector3 &emission, const material_values &material) {
+            [](scene_handle &self, const vector3 &centre, const vector3 &normal, double radius, const vector3 &albedo,
+               const vector3 &emission, const material_values &material) {
                 sf_disk disk = make_disk(centre, normal, radius, albedo, emission, material);
                 call([&](sf_error *error) { return sf_scene_add_disk(self.scene, &disk, error); });
             },
@@ -258,8 +258,7 @@ void bind_scene(nb::module_ &m) {
                 const char *known;
                 while ((known = sf_light_sampling_name(static_cast<sf_light_sampling>(k))) && name != known) ++k;
                 if (!known)
-                    throw nb::value_error(
-                        ("light_sampling is '" + name + "'; give both, light or surface").c_str());
+                    throw nb::value_error(("light_sampling is '" + name + "'; give both, light or surface").c_str());
                 call([&](sf_error *error) {
                     return sf_scene_set_light_sampling(self.scene, static_cast<sf_light_sampling>(k), error);
                 });

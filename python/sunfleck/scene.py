@@ -272,7 +272,8 @@ class SceneInfo:
     """What a scene holds.
 
     ``light_count`` pieces are sampled for light (triangles, pairs of them, spheres, disks, suns, the
-    environment), of which ``rectangle_light_count`` are pairs of triangles that form a parallelogram; ``degenerate_count`` triangles have no area;
+    environment), of which ``rectangle_light_count`` are pairs of triangles that form a parallelogram;
+    ``degenerate_count`` triangles have no area;
     ``copied_bytes`` of the arrays could not be read in place; scenes of the same picture have
     the same ``hash``.
     """

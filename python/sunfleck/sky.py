@@ -129,9 +129,7 @@ class Environment:
     up: Vector
     rotation: float
 
-    def __init__(
-        self, image: ArrayLike, up: Sequence[float] = (0.0, 1.0, 0.0), rotation: float = 0.0
-    ) -> None:
+    def __init__(self, image: ArrayLike, up: Sequence[float] = (0.0, 1.0, 0.0), rotation: float = 0.0) -> None:
         with np.errstate(over="ignore"):  # becomes infinite, which C refuses by its place
             array: NDArray[Any] = real_array("image", image, np.dtype(np.float32))
         if array.ndim != 3 or array.shape[2] != 3:

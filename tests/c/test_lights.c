@@ -150,7 +150,11 @@ static void test_solid_angle_is_planned_where_a_surface_is_near_and_else_not(voi
         float height, ratio;
         bool planned;
     } cases[] = {/* the light's diagonal is 2.83 */
-                 {2.7f, 1, true}, {2.9f, 1, false}, {2.9f, 1.1f, true}, {0.1f, 0, false}, {100, INFINITY, true}};
+                 {2.7f, 1, true},
+                 {2.9f, 1, false},
+                 {2.9f, 1.1f, true},
+                 {0.1f, 0, false},
+                 {100, INFINITY, true}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         square floor = make_square(50, 0, 1), light = make_square(1, cases[i].height, -1);
         sf_mesh meshes[2] = {square_mesh(&floor, 0.7f, 0), square_mesh(&light, 0, 1)};
