@@ -35,7 +35,7 @@ typedef struct sf_coordinate_source {
     uint32_t count;     /* 1 or 2 */
 } sf_coordinate_source;
 
-#define SF_SET_DIMENSIONS 5 /* light 0 1, then pixel, lens or surface 2 3, then choice 4 */
+#define SF_SET_DIMENSIONS 6 /* light 0 1, then pixel, lens or surface 2 3, then choice 4, lobe 5 */
 
 typedef struct sf_coordinates {
     sf_pattern pattern;

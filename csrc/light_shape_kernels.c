@@ -296,9 +296,31 @@ static inline void connect(sf_batch *SF_RESTRICT b, const shape_lanes *SF_RESTRI
     b->alive[i] = sum > 0;
 }
 
+/* The same, whatever the surface makes of it. */
+static inline void connect_bare(sf_batch *SF_RESTRICT b, const shape_lanes *SF_RESTRICT lanes,
+                                const drawn_lanes *SF_RESTRICT d, uint32_t first, uint32_t l) {
+    uint32_t i = first + l;
+    float density = d->density[l], area = lanes->field[SF_LIGHT_AREA][l], sum = 0;
+    float scale = density > 0 ? SF_PI_F / (density * area) : 0.0f; /* the weight has a diffuse surface's 1/pi */
+    for (int c = 0; c < 3; ++c) {
+        float value = b->throughput[c][i] * lanes->field[SF_LIGHT_WEIGHT_R + c][l] * d->radiance[c][l] * scale;
+        b->to_light[c][i] = d->to[c][l];
+        b->contribution[c][i] = value;
+        sum += value;
+    }
+    bool point = lanes->way[l] == SF_LIGHT_IS_DIRECTION;
+    b->light_pdf[i] = point ? INFINITY : lanes->field[SF_LIGHT_PDF][l] * area * density;
+    b->alive[i] = sum > 0;
+}
+
+/* `weigh` for diffuse surfaces, or any surface. */
+typedef enum connection { CONNECT_ALL, CONNECT_WEIGHTED, CONNECT_BARE } connection;
+
 static void connect_packet(sf_batch *SF_RESTRICT b, const shape_lanes *SF_RESTRICT lanes,
-                           const drawn_lanes *SF_RESTRICT d, uint32_t first, bool weigh) {
-    if (weigh)
+                           const drawn_lanes *SF_RESTRICT d, uint32_t first, connection how) {
+    if (how == CONNECT_BARE)
+        EACH_LANE connect_bare(b, lanes, d, first, l);
+    else if (how == CONNECT_WEIGHTED)
         EACH_LANE connect(b, lanes, d, first, l, true);
     else
         EACH_LANE connect(b, lanes, d, first, l, false);
@@ -323,7 +345,7 @@ static void take_packet(shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT
     }
 }
 
-static void light(sf_batch *b, const sf_scene *scene, uint32_t count, bool weigh) {
+static void connect_all(sf_batch *b, const sf_scene *scene, uint32_t count, connection how) {
     const sf_light_table *lights = &scene->lights;
     bool several = lights->count > 1;
     float (*u)[SF_PATHS] = sf_coordinates_by_ray(b, count, several ? 3 : 2);
@@ -335,8 +357,15 @@ static void light(sf_batch *b, const sf_scene *scene, uint32_t count, bool weigh
         take_packet(&lanes, &drawn, b, lights, u, first, count);
         choose_ways(&lanes);
         draw(&lanes, &scene->sky, &drawn);
-        connect_packet(b, &lanes, &drawn, first, weigh);
+        connect_packet(b, &lanes, &drawn, first, how);
     }
+}
+
+static void light(sf_batch *b, const sf_scene *scene, uint32_t count, bool weigh) {
+    connect_all(b, scene, count, weigh ? CONNECT_WEIGHTED : CONNECT_ALL);
+}
+static void bare_light(sf_batch *b, const sf_scene *scene, uint32_t count) {
+    connect_all(b, scene, count, CONNECT_BARE);
 }
 
 /* ---- light found ---- */
@@ -448,4 +477,4 @@ static void add_found(sf_batch *b, uint32_t count) {
     }
 }
 
-const sf_light_shape_kernels SF_AT_LEVEL(sf_light_shape_kernels) = {light, found, add_found};
+const sf_light_shape_kernels SF_AT_LEVEL(sf_light_shape_kernels) = {light, bare_light, found, add_found};

@@ -14,6 +14,11 @@ typedef struct sf_light_shape_kernels {
     /* As sf_light_kernels.light. */
     void (*light)(sf_batch *batch, const sf_scene *scene, uint32_t count, bool weigh);
 
+    /* Light sampled for surfaces of any kind: `contribution` without what the surface makes of it (a
+     * diffuse one would scatter cosine / pi), `light_pdf` by solid angle, infinite for a direction
+     * that no ray finds; to_light, bin and `alive` as above. */
+    void (*bare_light)(sf_batch *batch, const sf_scene *scene, uint32_t count);
+
     /* Fills `emission` of surface rays, times throughput: the share of what they hit that light
      * sampling leaves to them, and the background. */
     void (*found)(sf_batch *batch, const sf_scene *scene, uint32_t count);

@@ -3,6 +3,7 @@
 
 #include "sunfleck/material.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "error.h"
@@ -10,6 +11,7 @@
 
 #define IOR_LOWEST 0.1f
 #define IOR_HIGHEST 10.0f
+#define SMOOTH_BELOW 0.01f /* alpha below 1e-4, which mapping_lobe.h does not take */
 
 sf_material sf_material_default(void) { return (sf_material){.kind = SF_MATERIAL_DIFFUSE, .ior = 1.5f}; }
 
@@ -35,6 +37,29 @@ sf_status sf_material_check(const sf_material *material, sf_error *error) {
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "roughness is %g; it must be in [0, 1]",
                        (double)material->roughness);
     return SF_STATUS_OK;
+}
+
+sf_scatter sf_scatter_of(const sf_material *material) {
+    bool smooth = material->roughness < SMOOTH_BELOW;
+    switch (material->kind) {
+        case SF_MATERIAL_DIFFUSE: break;
+        case SF_MATERIAL_MIRROR: return SF_SCATTER_MIRROR;
+        case SF_MATERIAL_CONDUCTOR: return smooth ? SF_SCATTER_SMOOTH_CONDUCTOR : SF_SCATTER_ROUGH_CONDUCTOR;
+        case SF_MATERIAL_DIELECTRIC:
+            /* Where both sides are alike, light goes straight on whatever the normal. */
+            smooth |= fabsf(material->ior - 1) < 1e-3f;
+            return smooth ? SF_SCATTER_SMOOTH_DIELECTRIC : SF_SCATTER_ROUGH_DIELECTRIC;
+    }
+    return SF_SCATTER_DIFFUSE;
+}
+
+void sf_material_tabulate(sf_mesh_table *table, size_t row, const sf_mesh *mesh) {
+    sf_scatter scatter = sf_scatter_of(&mesh->material);
+    bool passes_albedo = scatter == SF_SCATTER_DIFFUSE || scatter == SF_SCATTER_MIRROR;
+    for (int c = 0; c < 3; ++c) table->columns[SF_MESH_PASS_R + c][row] = passes_albedo ? mesh->albedo[c] : 1;
+    table->columns[SF_MESH_SCATTER][row] = (float)scatter;
+    table->columns[SF_MESH_IOR][row] = mesh->material.ior;
+    table->columns[SF_MESH_ALPHA][row] = mesh->material.roughness * mesh->material.roughness;
 }
 
 uint64_t sf_material_hash(uint64_t hash, const sf_material *material) {

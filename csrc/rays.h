@@ -5,10 +5,24 @@
 #ifndef SUNFLECK_RAYS_H
 #define SUNFLECK_RAYS_H
 
+#include <math.h>
+
 #include "batch.h"
 
 /* Rays in whole packets. */
 static inline uint32_t sf_whole_packets(uint32_t count) { return (count + SF_LANES - 1) / SF_LANES * SF_LANES; }
+
+/* How far a hit is moved off its surface: 2^-18 of what its coordinates were computed from. */
+static inline float sf_lift(float origin_x, float origin_y, float origin_z, float distance) {
+    float ax = fabsf(origin_x), ay = fabsf(origin_y), az = fabsf(origin_z), largest = ax > ay ? ax : ay;
+    return 0x1p-18f * ((largest > az ? largest : az) + distance);
+}
+/* On a sphere its middle and radius count too. */
+static inline float sf_lift_on_sphere(const sf_round *round, float lift) {
+    float ax = fabsf(round->centre[0]), ay = fabsf(round->centre[1]), az = fabsf(round->centre[2]);
+    float largest = ax > ay ? ax : ay, own = 0x1p-18f * ((largest > az ? largest : az) + round->radius);
+    return own > lift ? own : lift;
+}
 
 /* The coordinates of the living paths; they are where they belong while all of them live. */
 static inline float (*sf_coordinates_by_ray(sf_batch *b, uint32_t count, int coordinates)) [SF_PATHS] {

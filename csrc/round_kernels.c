@@ -27,11 +27,6 @@ static void face(sf_batch *b, const sf_scene *scene, uint32_t count) {
     }
 }
 
-static inline float largest(float x, float y, float z) {
-    float ax = fabsf(x), ay = fabsf(y), az = fabsf(z), most = ax > ay ? ax : ay;
-    return most > az ? most : az;
-}
-
 /* The lift is a share of what the point was computed from, as elsewhere: here also the sphere's
  * middle and radius. */
 static void settle(sf_batch *b, const sf_scene *scene, uint32_t count) {
@@ -39,9 +34,8 @@ static void settle(sf_batch *b, const sf_scene *scene, uint32_t count) {
         const sf_round *round = scene->rounds + b->mesh[i];
         if (round->kind != SF_ROUND_SPHERE) continue;
         const float *centre = round->centre;
-        float own = largest(centre[0], centre[1], centre[2]) + round->radius;
-        float ray = largest(b->origin[0][i], b->origin[1][i], b->origin[2][i]) + b->distance[i];
-        float lift = 0x1p-18f * (own > ray ? own : ray);
+        float lift =
+            sf_lift_on_sphere(round, sf_lift(b->origin[0][i], b->origin[1][i], b->origin[2][i], b->distance[i]));
         for (int c = 0; c < 3; ++c)
             b->point[c][i] = (centre[c] + round->radius * b->hit_normal[c][i]) + lift * b->normal[c][i];
     }

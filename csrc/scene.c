@@ -298,11 +298,13 @@ static sf_status build_mesh_table(sf_scene *scene, sf_error *error) {
         if (!column) return sf_fail_memory(error, "the table of meshes", rows * sizeof *column);
         memset(column, 0, rows * sizeof *column);
     }
-    for (size_t i = 0; i < scene->info.mesh_count; ++i)
+    for (size_t i = 0; i < scene->info.mesh_count; ++i) {
         for (int c = 0; c < 3; ++c) {
             table->columns[SF_MESH_ALBEDO_R + c][i] = scene->meshes[i].mesh.albedo[c];
             table->columns[SF_MESH_EMISSION_R + c][i] = scene->meshes[i].mesh.emission[c];
         }
+        sf_material_tabulate(table, i, &scene->meshes[i].mesh);
+    }
     return SF_STATUS_OK;
 }
 

@@ -21,8 +21,25 @@ typedef enum sf_mesh_column {
     SF_MESH_EMISSION_G,
     SF_MESH_EMISSION_B,
     SF_MESH_LIGHT_PDF, /* density, by area, with which light sampling finds a point of the mesh */
+    SF_MESH_PASS_R,    /* what every path takes along from the surface: the albedo of diffuse surfaces and */
+    SF_MESH_PASS_G,    /* mirrors, 1 where it depends on directions */
+    SF_MESH_PASS_B,
+    SF_MESH_SCATTER, /* sf_scatter, as a float */
+    SF_MESH_IOR,
+    SF_MESH_ALPHA, /* GGX's */
     SF_MESH_COLUMNS
 } sf_mesh_column;
+
+/* The ways of scattering that vertices are sorted by. */
+typedef enum sf_scatter {
+    SF_SCATTER_DIFFUSE,
+    SF_SCATTER_MIRROR,
+    SF_SCATTER_SMOOTH_CONDUCTOR,
+    SF_SCATTER_SMOOTH_DIELECTRIC,
+    SF_SCATTER_ROUGH_CONDUCTOR,
+    SF_SCATTER_ROUGH_DIELECTRIC,
+    SF_SCATTERS
+} sf_scatter;
 
 typedef struct sf_mesh_table {
     float *columns[SF_MESH_COLUMNS];
@@ -177,7 +194,15 @@ static inline bool sf_emits(const sf_mesh *mesh) {
     return mesh->emission[0] > 0 || mesh->emission[1] > 0 || mesh->emission[2] > 0;
 }
 static inline bool sf_reflects(const sf_mesh *mesh) {
-    return mesh->albedo[0] > 0 || mesh->albedo[1] > 0 || mesh->albedo[2] > 0;
+    return mesh->albedo[0] > 0 || mesh->albedo[1] > 0 || mesh->albedo[2] > 0 ||
+           mesh->material.kind == SF_MATERIAL_DIELECTRIC || mesh->material.kind == SF_MATERIAL_CONDUCTOR;
+}
+
+/* Whether it has surfaces that are not diffuse. */
+static inline bool sf_scene_scatters(const sf_scene *scene) {
+    for (size_t i = 0; i < scene->info.mesh_count; ++i)
+        if (scene->meshes[i].mesh.material.kind != SF_MATERIAL_DIFFUSE) return true;
+    return false;
 }
 
 /* scene.c, for the files that add to a scene. */
@@ -189,7 +214,11 @@ uint64_t sf_scene_hash(uint64_t hash, const void *bytes, size_t count);
 #define SF_LENGTH_LIMIT 1e12f   /* volumes, which Embree computes, stay finite */
 #define SF_RADIANCE_LIMIT 1e18f /* sums and products with weights stay finite */
 
-/* material.c: takes what decides the picture into the hash: nothing of a diffuse material. */
+/* material.c: how a surface of the material scatters. */
+sf_scatter sf_scatter_of(const sf_material *material);
+/* Fills what the table's row has of the material. */
+void sf_material_tabulate(sf_mesh_table *table, size_t row, const sf_mesh *mesh);
+/* Takes what decides the picture into the hash: nothing of a diffuse material. */
 uint64_t sf_material_hash(uint64_t hash, const sf_material *material);
 
 /* The plan of a scene whose meshes, lights, camera and background are known. */

@@ -179,7 +179,8 @@ typedef enum sf_dimension_use {
     SF_DIMENSION_LENS,      /* 2: position on the lens */
     SF_DIMENSION_LIGHT,     /* 2: point on the light, for the vertex `bounce` */
     SF_DIMENSION_CHOICE,    /* 1: which light, for the vertex `bounce` */
-    SF_DIMENSION_SURFACE    /* 2: direction off the surface, at the vertex `bounce` */
+    SF_DIMENSION_SURFACE,   /* 2: direction off the surface, at the vertex `bounce` */
+    SF_DIMENSION_LOBE       /* 1: reflection or refraction, at the vertex `bounce` */
 } sf_dimension_use;
 
 typedef struct sf_plan_dimensions {
@@ -202,6 +203,8 @@ typedef enum sf_stage {
     SF_STAGE_LIGHT,        /* shadow rays to points on lights */
     SF_STAGE_LIGHT_SHAPES, /* light sampled otherwise than by area of triangles and parallelograms: by solid
                               angle, from spheres, disks, suns, the environment */
+    SF_STAGE_SCATTER,      /* mirrors, dielectrics, conductors: from them surface-sampled rays start at the
+                              last bounce too */
     SF_STAGE_SURFACE,      /* surface-sampled rays between vertices */
     SF_STAGE_LAST_SURFACE, /* surface-sampled rays at the last bounce, for the background or
                               where there is no light to sample */
@@ -213,7 +216,7 @@ typedef enum sf_stage {
 const char *sf_stage_name(sf_stage stage);
 const char *sf_dimension_use_name(sf_dimension_use use);
 
-#define SF_PLAN_MAX_GROUPS (2 + 3 * SF_MAX_BOUNCES)
+#define SF_PLAN_MAX_GROUPS (2 + 4 * SF_MAX_BOUNCES)
 
 /* What a scene turned out to need, and what the renderer runs: nothing else. */
 typedef struct sf_plan {
