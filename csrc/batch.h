@@ -10,6 +10,8 @@
 #ifndef SUNFLECK_BATCH_H
 #define SUNFLECK_BATCH_H
 
+#include <stdbool.h>
+
 #include "coordinates.h"
 #include "film.h"
 #include "platform.h"
@@ -32,6 +34,7 @@ typedef struct sf_render_context {
     sf_coordinates coordinates;
     sf_camera_frame camera;
     sf_pixel_filter filter;
+    bool signed_filter; /* it has negative lobes */
     sf_seed_policy seeds;
     uint32_t aovs; /* bit k: sf_aov k is asked for */
     sf_isa isa;
@@ -70,7 +73,9 @@ typedef struct sf_batch {
     sf_block blocks[SF_BLOCKS];
     sf_block_statistics statistics[SF_BLOCKS];
     uint32_t block_count;
-    struct sf_hit_sums *hit_sums; /* by block; NULL where no AOV asks for the first hits */
+    uint32_t negative[SF_BLOCKS];                  /* bit l: the filter is negative at sample l */
+    sf_vector_moments negative_moments[SF_BLOCKS]; /* of those samples; `statistics` then has the others */
+    struct sf_hit_sums *hit_sums;                  /* by block; NULL where no AOV asks for the first hits */
 } sf_batch;
 
 /* Traces the paths of the batch's blocks: fills `statistics`. */
