@@ -3,6 +3,7 @@
 
 """pixel filters of a render: constants exact, edges and ramps as the filter has them, half-widths that hold."""
 
+import itertools
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,7 @@ import sunfleck as sf
 SIGNED = ("mitchell", "lanczos")
 HALF = 12.0  # of the frame of `plane_scene`, in pixels
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating]
 
 
 def assert_same_film(a: sf.Image, b: sf.Image) -> None:
@@ -52,13 +53,13 @@ def blackman_harris(x: Array) -> Array:
     """Harris 1978, table 1: 4-term, -92 dB."""
     t = 2 * np.pi * (x / 3 + 0.5)
     window = 0.35875 - 0.48829 * np.cos(t) + 0.14128 * np.cos(2 * t) - 0.01168 * np.cos(3 * t)
-    return np.where(np.abs(x) < 1.5, window, 0.0)
+    return np.asarray(np.where(np.abs(x) < 1.5, window, 0.0))
 
 
 def truncated(x: Array) -> Array:
     """A Gaussian of sigma 0.4 within a circle of radius 1.5, summed along y."""
     chord = np.sqrt(np.maximum(1.5**2 - x**2, 0))
-    return np.exp(-(x**2) / 0.32) * erf(chord / (0.4 * np.sqrt(2)))
+    return np.asarray(np.exp(-(x**2) / 0.32) * erf(chord / (0.4 * np.sqrt(2))))
 
 
 AXES: dict[str, Callable[[Array], Array]] = {
@@ -77,7 +78,7 @@ def step_response(name: str, distance: Array) -> Array:
     cells = np.linspace(-4, 4, 80001)  # midpoint rule: within 1e-7 for these
     middle = (cells[1:] + cells[:-1]) / 2
     integral = np.concatenate([[0.0], np.cumsum(AXES[name](middle))])
-    return np.interp(distance, cells, integral / integral[-1])
+    return np.asarray(np.interp(distance, cells, integral / integral[-1]))
 
 
 def test_every_pixel_mapping_is_a_filter() -> None:
@@ -123,7 +124,7 @@ def test_an_edge_has_the_filters_step_response_within_its_half_width(pixel_filte
 def test_a_ramp_keeps_its_mean(pixel_filter: str) -> None:
     """Strips of 1/8 pixel are symmetric about every pixel's centre: the value there is the mean."""
     edges = np.arange(-24 * 8, 24 * 8 + 1) / 8
-    scene = plane_scene([strip(a, b, 1 + (a + b) / 50) for a, b in zip(edges[:-1], edges[1:], strict=True)])
+    scene = plane_scene([strip(a, b, 1 + (a + b) / 50) for a, b in itertools.pairwise(edges)])
     expected = 1 + (np.arange(24) + 0.5 - HALF) / 25
     image = sf.render(scene, 24, 24, spp=256, pixel_filter=pixel_filter, pattern="random", stop="standard-error")
     error = image.color[..., 0] - expected

@@ -98,7 +98,8 @@ typedef enum sf_aov {
                           below 2 samples */
     SF_AOV_HALF_A,     /* half_a.R .G .B: mean radiance of samples 0-15, 32-47, 64-79, … */
     SF_AOV_HALF_B,     /* half_b.R .G .B: of the others; 0 where there were none yet. The two halves
-                          have the mean as their mean, weighted by their counts */
+                          have the mean as their mean, weighted by their counts (under a filter with
+                          negative lobes but for a part of the half-width) */
     SF_AOV_COUNT
 } sf_aov;
 const char *sf_aov_name(sf_aov aov); /* "albedo", …; NULL beyond the last */
