@@ -75,6 +75,7 @@ typedef struct sf_batch {
     uint32_t block_count;
     uint32_t negative[SF_BLOCKS];                  /* bit l: the filter is negative at sample l */
     sf_vector_moments negative_moments[SF_BLOCKS]; /* of those samples; `statistics` then has the others */
+    uint32_t primitive[SF_PATHS];                  /* of the mesh that was hit; with SF_STAGE_LIGHT_SHAPES alone */
     struct sf_hit_sums *hit_sums;                  /* by block; NULL where no AOV asks for the first hits */
 } sf_batch;
 

@@ -12,10 +12,13 @@ const char *sf_stage_name(sf_stage stage) {
         case SF_STAGE_CAMERA: return "camera";
         case SF_STAGE_LENS: return "lens";
         case SF_STAGE_INTERSECT: return "intersect";
+        case SF_STAGE_ROUND: return "round shapes";
         case SF_STAGE_MISS: return "miss";
+        case SF_STAGE_SKY: return "sky";
         case SF_STAGE_EMISSION: return "emission";
         case SF_STAGE_CHOOSE_LIGHT: return "choose light";
         case SF_STAGE_LIGHT: return "light";
+        case SF_STAGE_LIGHT_SHAPES: return "light shapes";
         case SF_STAGE_SURFACE: return "surface";
         case SF_STAGE_LAST_SURFACE: return "last surface";
         case SF_STAGE_WEIGHT: return "weight";
@@ -37,18 +40,25 @@ const char *sf_dimension_use_name(sf_dimension_use use) {
 
 /* What the scene holds, as far as the plan depends on it. */
 typedef struct contents {
-    bool emission, reflection, background, lens;
+    bool emission, reflection, background, lens, round, sky, environment, special;
+    sf_light_sampling sampling;
     size_t lights;
 } contents;
 
 static contents survey(const sf_scene *scene) {
-    contents has = {.lights = scene->lights.count, .lens = scene->camera.aperture_radius > 0};
-    for (size_t i = 0; i < scene->info.mesh_count; ++i)
-        for (int c = 0; c < 3; ++c) {
-            has.emission |= scene->meshes[i].mesh.emission[c] > 0;
-            has.reflection |= scene->meshes[i].mesh.albedo[c] > 0;
-        }
+    contents has = {.lights = scene->lights.count,
+                    .lens = scene->camera.aperture_radius > 0,
+                    .round = scene->rounds != NULL,
+                    .environment = scene->environment.pixels != NULL,
+                    .special = scene->lights.special,
+                    .sampling = scene->light_sampling};
+    for (size_t i = 0; i < scene->info.mesh_count; ++i) {
+        has.emission |= sf_emits(&scene->meshes[i].mesh);
+        has.reflection |= sf_reflects(&scene->meshes[i].mesh);
+    }
     for (int c = 0; c < 3; ++c) has.background |= scene->background[c] > 0;
+    has.sky = has.environment;
+    for (size_t i = 0; i < scene->sky.sun_count; ++i) has.sky |= scene->sky.suns[i].height > 0;
     return has;
 }
 
@@ -57,16 +67,24 @@ static uint32_t choose_stages(const contents *has, uint32_t max_bounces) {
 #define NEED(condition, stage) stages |= (uint32_t)((condition) != 0) << (stage)
     NEED(!has->lens, SF_STAGE_CAMERA);
     NEED(has->lens, SF_STAGE_LENS);
+    NEED(has->round, SF_STAGE_ROUND);
     NEED(has->background, SF_STAGE_MISS);
+    NEED(has->sky, SF_STAGE_SKY);
     NEED(has->emission, SF_STAGE_EMISSION);
-    /* Light arrives from lights, which are sampled, or from the background, which is not. */
-    bool bounces = max_bounces > 0 && has->reflection && (has->lights || has->background);
-    bool surface = bounces && max_bounces > 1, last = bounces && has->background;
-    NEED(bounces && has->lights > 0, SF_STAGE_LIGHT);
-    NEED(bounces && has->lights > 1, SF_STAGE_CHOOSE_LIGHT);
+    /* Light arrives from lights, which are sampled, or from the background, which is not. An
+     * environment is found by both, since most of it is wide. */
+    bool sampled = has->lights && has->sampling != SF_LIGHT_SAMPLING_SURFACE;
+    bool found = has->sampling == SF_LIGHT_SAMPLING_SURFACE
+                     ? has->emission || has->sky
+                     : has->environment && has->sampling == SF_LIGHT_SAMPLING_BOTH;
+    bool bounces = max_bounces > 0 && has->reflection && (sampled || found || has->background);
+    bool surface = bounces && max_bounces > 1, last = bounces && (has->background || found);
+    NEED(bounces && sampled, SF_STAGE_LIGHT);
+    NEED(bounces && sampled && has->lights > 1, SF_STAGE_CHOOSE_LIGHT);
+    NEED(bounces && sampled && has->special, SF_STAGE_LIGHT_SHAPES);
     NEED(surface, SF_STAGE_SURFACE);
     NEED(last, SF_STAGE_LAST_SURFACE);
-    NEED(has->lights && (surface || last), SF_STAGE_WEIGHT);
+    NEED(sampled && has->sampling == SF_LIGHT_SAMPLING_BOTH && (surface || last), SF_STAGE_WEIGHT);
 #undef NEED
     return stages;
 }

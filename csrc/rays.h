@@ -25,4 +25,21 @@ static inline float sf_power_weight(float pdf, float other) {
     return 1 / (1 + ratio * ratio);
 }
 
+/* What part of light that can be sampled is left to the rays that find it. */
+typedef enum sf_found_share {
+    SF_FOUND_ALL,      /* light is not sampled */
+    SF_FOUND_NONE,     /* light sampling alone has it: but for rays of a mirror, which nothing else finds */
+    SF_FOUND_WEIGHTED, /* both do, weighted by their densities */
+} sf_found_share;
+static inline sf_found_share sf_share_found(const sf_plan *plan) {
+    if (sf_plan_has(plan, SF_STAGE_WEIGHT)) return SF_FOUND_WEIGHTED;
+    return sf_plan_has(plan, SF_STAGE_LIGHT) ? SF_FOUND_NONE : SF_FOUND_ALL;
+}
+/* `pdf`: with which the surface drew the ray, infinity in a mirror's direction; `light_pdf`: with
+ * which light sampling would have. */
+static inline float sf_found_weight(sf_found_share share, float pdf, float light_pdf) {
+    if (share == SF_FOUND_WEIGHTED) return sf_power_weight(pdf, light_pdf);
+    return share == SF_FOUND_ALL || pdf > 3e38f ? 1.0f : 0.0f;
+}
+
 #endif

@@ -26,6 +26,8 @@ static void take_hits(sf_batch *b, const sf_scene *scene, const struct RTCRayHit
         uint32_t mesh = rays->hit.geomID[l];
         b->mesh[first + l] = mesh < miss ? mesh : miss;
     }
+    if (sf_plan_has(&scene->plan, SF_STAGE_LIGHT_SHAPES))
+        memcpy(b->primitive + first, rays->hit.primID, sizeof rays->hit.primID);
 }
 
 void sf_trace_nearest(sf_batch *b, const sf_scene *scene, uint32_t packets, const uint32_t *active,

@@ -38,6 +38,8 @@ from sunfleck.points import PATTERNS, SCRAMBLES, points, valid_counts
 from sunfleck.render import AOVS, PIXEL_FILTERS, STOP_REASONS, Image, Progress, Summary, merge, render
 from sunfleck.rng import RNGS, Rng
 from sunfleck.scene import Camera, Mesh, Plan, PlanDimensions, Scene, SceneInfo
+from sunfleck.shapes import Disk, Sphere
+from sunfleck.sky import Environment, Sun
 from sunfleck.tolerance import Tolerance
 
 if TYPE_CHECKING:
@@ -71,6 +73,8 @@ __all__ = [
     "Conductor",
     "ConfidenceSequence",
     "Dielectric",
+    "Disk",
+    "Environment",
     "Error",
     "Image",
     "Integral",
@@ -87,7 +91,9 @@ __all__ = [
     "RunningSums",
     "Scene",
     "SceneInfo",
+    "Sphere",
     "Summary",
+    "Sun",
     "Tolerance",
     "VectorMoments",
     "WeightedMoments",

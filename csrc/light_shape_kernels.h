@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* Light of all shapes, sampled from a batch's vertices and found by its rays: the stages of scenes
+ * whose lights are not all triangles and parallelograms sampled by area, and of those that take
+ * one kind of sampling alone. */
+#ifndef SUNFLECK_LIGHT_SHAPE_KERNELS_H
+#define SUNFLECK_LIGHT_SHAPE_KERNELS_H
+
+#include "batch.h"
+#include "level.h"
+
+typedef struct sf_light_shape_kernels {
+    /* As sf_light_kernels.light. */
+    void (*light)(sf_batch *batch, const sf_scene *scene, uint32_t count, bool weigh);
+
+    /* Fills `emission` of surface rays, times throughput: the share of what they hit that light
+     * sampling leaves to them, and the background. */
+    void (*found)(sf_batch *batch, const sf_scene *scene, uint32_t count);
+
+    /* Adds `emission` to the radiance of the paths. */
+    void (*add_found)(sf_batch *batch, uint32_t count);
+} sf_light_shape_kernels;
+SF_KERNELS(sf_light_shape_kernels)
+
+#endif
