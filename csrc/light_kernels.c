@@ -60,7 +60,7 @@ static inline void connect(sf_batch *b, const light_lanes *lights, uint32_t firs
 /* The quarter of the cell and the cell of the light: rays of a bin start close to each other and
  * end close to each other. */
 static inline uint32_t shadow_bin(uint32_t path, float s, float t) {
-    return path / (SF_PATHS / 4) * 16 + (uint32_t)(int)(s * 4) * 4 + (uint32_t)(int)(t * 4);
+    return path / (SF_LANES * SF_BLOCKS / 4) * 16 + (uint32_t)(int)(s * 4) * 4 + (uint32_t)(int)(t * 4);
 }
 
 static void connect_packet(sf_batch *b, const light_lanes *lights, float (*u)[SF_PATHS], uint32_t first, bool weigh) {
