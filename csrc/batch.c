@@ -185,5 +185,9 @@ void sf_batch_run(sf_batch *batch, const sf_render_context *context) {
         if (light) connect_lights(&r, bounce, count);
         if (onward) count = trace_surface(&r, bounce, count);
     }
-    sf_gather_kernels_at(context->isa)->gather_statistics(batch);
+    const sf_gather_kernels *gather = sf_gather_kernels_at(context->isa);
+    if (context->signed_filter)
+        gather->gather_by_sign(batch);
+    else
+        gather->gather_statistics(batch);
 }

@@ -10,6 +10,8 @@
 #ifndef SUNFLECK_BATCH_H
 #define SUNFLECK_BATCH_H
 
+#include <stdbool.h>
+
 #include "coordinates.h"
 #include "film.h"
 #include "platform.h"
@@ -32,6 +34,7 @@ typedef struct sf_render_context {
     sf_coordinates coordinates;
     sf_camera_frame camera;
     sf_pixel_filter filter;
+    bool signed_filter; /* it has negative lobes */
     sf_seed_policy seeds;
     uint32_t aovs; /* bit k: sf_aov k is asked for */
     sf_isa isa;
@@ -70,6 +73,8 @@ typedef struct sf_batch {
     sf_block blocks[SF_BLOCKS];
     sf_block_statistics statistics[SF_BLOCKS];
     uint32_t block_count;
+    uint32_t negative[SF_BLOCKS];                  /* bit l: the filter is negative at sample l */
+    sf_vector_moments negative_moments[SF_BLOCKS]; /* of those samples; `statistics` then has the others */
     /* With SF_STAGE_SCATTER alone, of the vertices. */
     float outgoing[3][SF_PATHS]; /* to where the path comes from, unit length */
     float outside[SF_PATHS];     /* 1 on the side that the geometric normal points to */

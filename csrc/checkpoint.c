@@ -17,10 +17,11 @@
 #include "error.h"
 #include "render_options.h"
 #include "replacement.h"
+#include "signed_filter.h"
 #include "stopping.h"
 
 #define TEXT_SIZE 96
-#define MAX_ARRAYS 64
+#define MAX_ARRAYS 96
 
 /* ---- the tables ---- */
 
@@ -109,6 +110,20 @@ static const column pixel_columns[] = {
     PIXEL("half_width", half_width, SF_ARRAY_F32, 1),
     PIXEL("reason", reason, SF_ARRAY_U8, 1),
 };
+
+/* Of the pixels of a filter with negative lobes. */
+#define SIGNED(name, field, type, width) {"signed." name, offsetof(sf_signed_pixel, field), type, width}
+static const column signed_columns[] = {
+    SIGNED("positive.count", positive.count, SF_ARRAY_U64, 1),
+    SIGNED("positive.mean", positive.mean, SF_ARRAY_F64, 3),
+    SIGNED("positive.m2", positive.m2, SF_ARRAY_F64, 1),
+    SIGNED("positive.nonfinite", positive.nonfinite, SF_ARRAY_U64, 1),
+    SIGNED("negative.count", negative.count, SF_ARRAY_U64, 1),
+    SIGNED("negative.mean", negative.mean, SF_ARRAY_F64, 3),
+    SIGNED("negative.m2", negative.m2, SF_ARRAY_F64, 1),
+    SIGNED("negative.nonfinite", negative.nonfinite, SF_ARRAY_U64, 1),
+    SIGNED("blocks", blocks, SF_ARRAY_F64, 1),
+};
 #define COUNT(table) (sizeof(table) / sizeof *(table))
 
 /* ---- arrays of a checkpoint ---- */
@@ -168,6 +183,9 @@ static void list_progress(array_list *list, sf_checkpoint *c) {
     list_array(list, "active", SF_ARRAY_U64, 1, c->cells, c->active, sizeof *c->active);
     list_columns(list, pixel_columns, COUNT(pixel_columns), film->pixels, (uint64_t)film->width * film->height,
                  sizeof *film->pixels);
+    if (film->signed_pixels)
+        list_columns(list, signed_columns, COUNT(signed_columns), film->signed_pixels,
+                     (uint64_t)film->width * film->height, sizeof *film->signed_pixels);
 }
 
 sf_status sf_checkpoint_save(const sf_checkpoint *checkpoint, const char *path, sf_error *error) {

@@ -19,7 +19,7 @@ static inline uint32_t sf_choose_piece(const sf_light_table *lights, float u) {
 /* The quarter of the cell and the cell of the light: rays of a bin start close to each other and
  * end close to each other. */
 static inline uint32_t sf_shadow_bin(uint32_t path, float s, float t) {
-    return path / (SF_PATHS / 4) * 16 + (uint32_t)(int)(s * 4) * 4 + (uint32_t)(int)(t * 4);
+    return path / (SF_LANES * SF_BLOCKS / 4) * 16 + (uint32_t)(int)(s * 4) * 4 + (uint32_t)(int)(t * 4);
 }
 
 #endif

@@ -176,8 +176,8 @@ static inline void respond_dielectric(sf_batch *b, const sf_scene *scene, uint32
 }
 
 /* The vertices i that scatter in one way. */
-#define FOR_EACH(b, scatter, i)                                                                                   \
-    for (uint32_t k_ = (b)->scatter_first[scatter], i;                                                            \
+#define FOR_EACH(b, scatter, i)                        \
+    for (uint32_t k_ = (b)->scatter_first[scatter], i; \
          k_ < (b)->scatter_first[(scatter) + 1] && (i = (b)->by_scatter[k_], true); ++k_)
 
 static void respond(sf_batch *b, const sf_scene *scene, bool diffuse_goes_on) {
@@ -194,8 +194,7 @@ static void respond(sf_batch *b, const sf_scene *scene, bool diffuse_goes_on) {
 
 /* What a smooth surface sends on is found by nothing else: as if its density were infinite, the
  * power heuristic leaves it the whole of the light that it hits. */
-static inline void leave_smooth(sf_batch *b, uint32_t i, const vertex *v, const float local[3],
-                                const float factor[3]) {
+static inline void leave_smooth(sf_batch *b, uint32_t i, const vertex *v, const float local[3], const float factor[3]) {
     leave(b, i, v, local, factor, INFINITY);
 }
 

@@ -35,7 +35,7 @@ from sunfleck.load import load
 from sunfleck.mapping import MAPPINGS
 from sunfleck.material import Conductor, Dielectric, Mirror
 from sunfleck.points import PATTERNS, SCRAMBLES, points, valid_counts
-from sunfleck.render import AOVS, STOP_REASONS, Image, Progress, Summary, merge, render
+from sunfleck.render import AOVS, PIXEL_FILTERS, STOP_REASONS, Image, Progress, Summary, merge, render
 from sunfleck.rng import RNGS, Rng
 from sunfleck.scene import Camera, Mesh, Plan, PlanDimensions, Scene, SceneInfo
 from sunfleck.shapes import Disk, Sphere
@@ -61,6 +61,7 @@ __all__ = [
     "AOVS",
     "MAPPINGS",
     "PATTERNS",
+    "PIXEL_FILTERS",
     "RNGS",
     "SCRAMBLES",
     "STOP_REASONS",

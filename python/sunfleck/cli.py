@@ -109,7 +109,7 @@ def _add_render(commands: argparse._SubParsersAction[_Parser]) -> None:
     sampling = parser.add_argument_group("sampling")
     add = sampling.add_argument
     add("--pattern", default="sobol", metavar="NAME", help=f"{', '.join(sf.PATTERNS)}; default sobol")
-    add("--pixel-filter", default="box", metavar="NAME", help="box, tent, gaussian; default box")
+    add("--pixel-filter", default="box", metavar="NAME", help=f"{', '.join(sf.PIXEL_FILTERS)}; default box")
     add("--stop", default="dyadic", metavar="RULE", help="dyadic, replicates or standard-error; default dyadic")
     add("--seeds", default="pixel", metavar="POLICY", help="pixel, thread, shared; default pixel")
     add("--seed", type=int, default=0, metavar="N", help="default 0")
