@@ -25,8 +25,8 @@ typedef struct run {
     const sf_light_kernels *light;
     const sf_light_shape_kernels *shapes;
     const sf_material_kernels *material; /* NULL without SF_STAGE_SCATTER */
-    bool special;   /* light is sampled, or weighted, in more ways than the plainest */
-    uint32_t group; /* the plan's next group of dimensions */
+    bool special;                        /* light is sampled, or weighted, in more ways than the plainest */
+    uint32_t group;                      /* the plan's next group of dimensions */
 } run;
 
 static bool has(const run *r, sf_stage stage) { return sf_plan_has(&r->context->scene->plan, stage); }
