@@ -10,7 +10,11 @@
 #include "coordinates_kernels.h"
 #include "gather_kernels.h"
 #include "light_kernels.h"
+#include "light_shape_kernels.h"
+#include "material_kernels.h"
+#include "round_kernels.h"
 #include "shade_kernels.h"
+#include "sky_kernels.h"
 
 /* The batch's run in progress: who works on what. */
 typedef struct run {
@@ -19,7 +23,10 @@ typedef struct run {
     const sf_coordinates_kernels *coordinates;
     const sf_shade_kernels *shade;
     const sf_light_kernels *light;
-    uint32_t group; /* the plan's next group of dimensions */
+    const sf_light_shape_kernels *shapes;
+    const sf_material_kernels *material; /* NULL without SF_STAGE_SCATTER */
+    bool special;                        /* light is sampled, or weighted, in more ways than the plainest */
+    uint32_t group;                      /* the plan's next group of dimensions */
 } run;
 
 static bool has(const run *r, sf_stage stage) { return sf_plan_has(&r->context->scene->plan, stage); }
@@ -32,6 +39,23 @@ static void next_coordinates(run *r, sf_dimension_use use, float (*out)[SF_PATHS
     r->coordinates->fill(&r->context->coordinates, source, r->batch->blocks, r->batch->block_count, out);
 }
 
+/* The same where the vertex `bounce` may have no such group. */
+static void optional_coordinates(run *r, sf_dimension_use use, uint32_t bounce, float (*out)[SF_PATHS]) {
+    const sf_plan *plan = &r->context->scene->plan;
+    for (uint32_t g = r->group; g < plan->dimension_group_count && plan->dimensions[g].bounce <= bounce; ++g)
+        if (plan->dimensions[g].bounce == bounce && plan->dimensions[g].use == use) {
+            next_coordinates(r, use, out);
+            return;
+        }
+}
+
+/* The nearest hits, with the normals of what is round. */
+static void trace_nearest(run *r, uint32_t packets, const uint32_t *active, sf_coherence coherence) {
+    const sf_scene *scene = r->context->scene;
+    sf_trace_nearest(r->batch, scene, packets, active, coherence);
+    if (has(r, SF_STAGE_ROUND)) sf_round_kernels_at(r->context->isa)->face(r->batch, scene, packets * SF_LANES);
+}
+
 static void trace_camera(run *r) {
     sf_batch *b = r->batch;
     const sf_scene *scene = r->context->scene;
@@ -42,8 +66,9 @@ static void trace_camera(run *r) {
     if (lens) next_coordinates(r, SF_DIMENSION_LENS, b->coordinate_by_ray);
     sf_camera_kernels_at(r->context->isa)
         ->camera(b, &r->context->camera, r->context->filter, lens ? b->coordinate_by_ray : NULL);
-    sf_trace_nearest(b, scene, b->block_count, active, SF_COHERENT);
+    trace_nearest(r, b->block_count, active, SF_COHERENT);
     r->shade->first_radiance(b, scene);
+    if (has(r, SF_STAGE_SKY)) sf_sky_kernels_at(r->context->isa)->first(b, scene);
     if (b->hit_sums) sf_aov_gather(b, r->context);
 }
 
@@ -52,22 +77,90 @@ static void connect_lights(run *r, uint32_t bounce, uint32_t count) {
     const sf_plan *plan = &r->context->scene->plan;
     next_coordinates(r, SF_DIMENSION_LIGHT, r->batch->coordinate);
     if (has(r, SF_STAGE_CHOOSE_LIGHT)) next_coordinates(r, SF_DIMENSION_CHOICE, r->batch->coordinate + 2);
-    bool weigh = bounce < plan->max_bounces || has(r, SF_STAGE_LAST_SURFACE);
-    r->light->light(r->batch, r->context->scene, count, weigh);
-    uint32_t rays = r->light->sort_shadow_rays(r->batch, count);
-    sf_trace_shadow(r->batch, r->context->scene, rays);
-    r->light->add_light(r->batch, count);
+    sf_batch *b = r->batch;
+    const sf_scene *scene = r->context->scene;
+    bool onward = bounce < plan->max_bounces || has(r, SF_STAGE_LAST_SURFACE);
+    bool weigh = onward && has(r, SF_STAGE_WEIGHT);
+    if (r->material) {
+        r->shapes->bare_light(b, scene, count);
+        r->material->respond(b, scene, onward);
+    } else
+        (r->special ? r->shapes->light : r->light->light)(b, scene, count, weigh);
+    uint32_t rays = r->light->sort_shadow_rays(b, count);
+    sf_trace_shadow(b, scene, r->material ? b->origin : b->point, rays);
+    r->light->add_light(b, count);
 }
 
-/* Surface-sampled rays from the vertices, and the radiance that they find. */
-static void trace_surface(run *r, uint32_t count) {
-    uint32_t active[SF_BLOCKS], packets = (count + SF_LANES - 1) / SF_LANES;
+/* The radiance that surface rays find. */
+static void add_found(run *r, uint32_t count) {
+    sf_batch *b = r->batch;
+    const sf_scene *scene = r->context->scene;
+    if (!r->special) {
+        r->shade->later_radiance(b, scene, count);
+        return;
+    }
+    r->shapes->found(b, scene, count);
+    if (has(r, SF_STAGE_SKY)) sf_sky_kernels_at(r->context->isa)->later(b, scene, count);
+    r->shapes->add_found(b, count);
+}
+
+/* The rays off surfaces of all kinds, at the last bounce perhaps of all but the diffuse. Returns
+ * how many vertices have one, of which those that are not `alive` scattered nothing. */
+static uint32_t scatter(run *r, uint32_t bounce, uint32_t count) {
+    sf_batch *b = r->batch;
+    const sf_scene *scene = r->context->scene;
+    if (bounce == scene->plan.max_bounces && !has(r, SF_STAGE_LAST_SURFACE)) {
+        r->material->end_diffuse(b, count);
+        count = r->shade->compact(b, count);
+        r->material->compact(b, count);
+        r->material->sort(b, scene, count);
+    }
+    optional_coordinates(r, SF_DIMENSION_SURFACE, bounce, b->coordinate);
+    optional_coordinates(r, SF_DIMENSION_LOBE, bounce, b->coordinate + 2);
+    if (b->scatter_first[SF_SCATTER_DIFFUSE + 1]) r->shade->surface(b, count);
+    r->material->scatter(b, scene, count);
+    return count;
+}
+
+/* Surface-sampled rays from the vertices, and the radiance that they find. Returns how many. */
+static uint32_t trace_surface(run *r, uint32_t bounce, uint32_t count) {
+    sf_batch *b = r->batch;
+    uint32_t active[SF_BLOCKS];
+    if (r->material)
+        count = scatter(r, bounce, count);
+    else {
+        next_coordinates(r, SF_DIMENSION_SURFACE, b->coordinate);
+        r->shade->surface(b, count);
+    }
+    uint32_t packets = (count + SF_LANES - 1) / SF_LANES;
+    if (packets == 0) return 0;
     for (uint32_t p = 0; p < packets; ++p) active[p] = 0xffffu;
     if (count % SF_LANES) active[packets - 1] = (1u << count % SF_LANES) - 1;
-    next_coordinates(r, SF_DIMENSION_SURFACE, r->batch->coordinate);
-    r->shade->surface(r->batch, count);
-    sf_trace_nearest(r->batch, r->context->scene, packets, active, SF_INCOHERENT);
-    r->shade->later_radiance(r->batch, r->context->scene, count);
+    if (r->material)
+        for (uint32_t i = 0; i < count; ++i) active[i / SF_LANES] &= ~((b->alive[i] ^ 1u) << i % SF_LANES);
+    trace_nearest(r, packets, active, SF_INCOHERENT);
+    add_found(r, count);
+    return count;
+}
+
+static void place_vertices(run *r, uint32_t bounce, uint32_t count) {
+    sf_batch *b = r->batch;
+    const sf_scene *scene = r->context->scene;
+    if (bounce == 1)
+        r->shade->first_vertex(b, scene);
+    else
+        r->shade->later_vertex(b, scene, count);
+    if (has(r, SF_STAGE_ROUND)) sf_round_kernels_at(r->context->isa)->settle(b, scene, count);
+}
+
+/* Leaves the vertices where the path goes on, moved together. */
+static uint32_t compact(run *r, uint32_t count) {
+    count = r->shade->compact(r->batch, count);
+    if (r->material) {
+        r->material->keep(r->batch, r->context->scene, count);
+        r->material->sort(r->batch, r->context->scene, count);
+    }
+    return count;
 }
 
 void sf_batch_run(sf_batch *batch, const sf_render_context *context) {
@@ -75,22 +168,26 @@ void sf_batch_run(sf_batch *batch, const sf_render_context *context) {
              .context = context,
              .coordinates = sf_coordinates_kernels_at(context->isa),
              .shade = sf_shade_kernels_at(context->isa),
-             .light = sf_light_kernels_at(context->isa)};
+             .light = sf_light_kernels_at(context->isa),
+             .shapes = sf_light_shape_kernels_at(context->isa)};
+    if (has(&r, SF_STAGE_SCATTER)) r.material = sf_material_kernels_at(context->isa);
     const sf_plan *plan = &context->scene->plan;
+    r.special = context->scene->lights.special || context->scene->light_sampling != SF_LIGHT_SAMPLING_BOTH;
     trace_camera(&r);
     bool light = has(&r, SF_STAGE_LIGHT);
-    uint32_t count = 0;
+    uint32_t count = batch->block_count * SF_LANES;
     for (uint32_t bounce = 1; bounce <= plan->max_bounces; ++bounce) {
-        bool onward = has(&r, bounce < plan->max_bounces ? SF_STAGE_SURFACE : SF_STAGE_LAST_SURFACE);
+        bool onward = r.material || has(&r, bounce < plan->max_bounces ? SF_STAGE_SURFACE : SF_STAGE_LAST_SURFACE);
         if (!light && !onward) break;
-        if (bounce == 1)
-            r.shade->first_vertex(batch, context->scene);
-        else
-            r.shade->later_vertex(batch, context->scene, count);
-        count = r.shade->compact(batch, bounce == 1 ? batch->block_count * SF_LANES : count);
+        place_vertices(&r, bounce, count);
+        count = compact(&r, count);
         if (count == 0) break;
         if (light) connect_lights(&r, bounce, count);
-        if (onward) trace_surface(&r, count);
+        if (onward) count = trace_surface(&r, bounce, count);
     }
-    sf_gather_kernels_at(context->isa)->gather_statistics(batch);
+    const sf_gather_kernels *gather = sf_gather_kernels_at(context->isa);
+    if (context->signed_filter)
+        gather->gather_by_sign(batch);
+    else
+        gather->gather_statistics(batch);
 }

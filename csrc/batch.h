@@ -10,6 +10,8 @@
 #ifndef SUNFLECK_BATCH_H
 #define SUNFLECK_BATCH_H
 
+#include <stdbool.h>
+
 #include "coordinates.h"
 #include "film.h"
 #include "platform.h"
@@ -32,6 +34,7 @@ typedef struct sf_render_context {
     sf_coordinates coordinates;
     sf_camera_frame camera;
     sf_pixel_filter filter;
+    bool signed_filter; /* it has negative lobes */
     sf_seed_policy seeds;
     uint32_t aovs; /* bit k: sf_aov k is asked for */
     sf_isa isa;
@@ -49,7 +52,7 @@ typedef struct sf_batch {
 
     float point[3][SF_PATHS];  /* the vertex, moved off its surface */
     float normal[3][SF_PATHS]; /* facing the side the ray came from */
-    float albedo[3][SF_PATHS];
+    float albedo[3][SF_PATHS]; /* or 1: what the surface passes on, whatever the directions */
     float emission[3][SF_PATHS];
     float light_pdf[SF_PATHS];
     uint32_t alive[SF_PATHS]; /* 1 where the path goes on */
@@ -70,6 +73,16 @@ typedef struct sf_batch {
     sf_block blocks[SF_BLOCKS];
     sf_block_statistics statistics[SF_BLOCKS];
     uint32_t block_count;
+    uint32_t negative[SF_BLOCKS];                  /* bit l: the filter is negative at sample l */
+    sf_vector_moments negative_moments[SF_BLOCKS]; /* of those samples; `statistics` then has the others */
+    /* With SF_STAGE_SCATTER alone, of the vertices. */
+    float outgoing[3][SF_PATHS]; /* to where the path comes from, unit length */
+    float outside[SF_PATHS];     /* 1 on the side that the geometric normal points to */
+    float lift[SF_PATHS];        /* how far `point` lies off the surface */
+    uint32_t surface[SF_PATHS];  /* the mesh */
+    uint32_t by_scatter[SF_PATHS], scatter_first[SF_SCATTERS + 1];
+
+    uint32_t primitive[SF_PATHS]; /* of the mesh that was hit; with SF_STAGE_LIGHT_SHAPES alone */
     struct sf_hit_sums *hit_sums; /* by block; NULL where no AOV asks for the first hits */
 } sf_batch;
 
@@ -81,7 +94,7 @@ void sf_batch_run(sf_batch *batch, const sf_render_context *context);
 void sf_trace_nearest(sf_batch *batch, const sf_scene *scene, uint32_t packets, const uint32_t *active,
                       sf_coherence coherence);
 
-/* trace.c: shadow rays order[0 .. count - 1] from `point` along `to_light`; fills `arrives`. */
-void sf_trace_shadow(sf_batch *batch, const sf_scene *scene, uint32_t count);
+/* trace.c: shadow rays order[0 .. count - 1] from `from` along `to_light`; fills `arrives`. */
+void sf_trace_shadow(sf_batch *batch, const sf_scene *scene, float (*from)[SF_PATHS], uint32_t count);
 
 #endif

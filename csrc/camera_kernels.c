@@ -7,21 +7,41 @@
 
 #include "sunfleck/mapping.h"
 
+/* Takes coordinate[0 .. 1] to the filter's places; the arguments after the two coordinates are the filter's. */
+#define PLACE(draw, ...)                                             \
+    for (uint32_t i = 0; i < b->block_count * SF_LANES; ++i) {       \
+        float place[2];                                              \
+        draw(b->coordinate[0][i], b->coordinate[1][i], __VA_ARGS__); \
+        b->coordinate[0][i] = place[0];                              \
+        b->coordinate[1][i] = place[1];                              \
+    }
+
+/* Notes where the filter, a product of its two axes, is negative. */
+#define NOTE_SIGNS(axis)                                                                                \
+    for (uint32_t block = 0; block < b->block_count; ++block) {                                         \
+        SF_ALIGNED(float) value[SF_LANES];                                                              \
+        const float *x = b->coordinate[0] + block * SF_LANES, *y = b->coordinate[1] + block * SF_LANES; \
+        for (int l = 0; l < SF_LANES; ++l) value[l] = axis(x[l]) * axis(y[l]);                          \
+        b->negative[block] = 0;                                                                         \
+        for (int l = 0; l < SF_LANES; ++l) b->negative[block] |= (uint32_t)(value[l] < 0) << l;         \
+    }
+
 static void apply_filter(sf_batch *b, sf_pixel_filter filter) {
-    uint32_t n = b->block_count * SF_LANES;
-    float place[2];
-    if (filter == SF_PIXEL_FILTER_TENT)
-        for (uint32_t i = 0; i < n; ++i) {
-            sf_pixel_tent_sample(b->coordinate[0][i], b->coordinate[1][i], place);
-            b->coordinate[0][i] = place[0];
-            b->coordinate[1][i] = place[1];
-        }
-    else if (filter == SF_PIXEL_FILTER_GAUSSIAN)
-        for (uint32_t i = 0; i < n; ++i) {
-            sf_pixel_gaussian_sample(b->coordinate[0][i], b->coordinate[1][i], 0.4f, place);
-            b->coordinate[0][i] = place[0];
-            b->coordinate[1][i] = place[1];
-        }
+    switch (filter) {
+        case SF_PIXEL_FILTER_BOX: break;
+        case SF_PIXEL_FILTER_TENT: PLACE(sf_pixel_tent_sample, place) break;
+        case SF_PIXEL_FILTER_GAUSSIAN: PLACE(sf_pixel_gaussian_sample, 0.4f, place) break;
+        case SF_PIXEL_FILTER_GAUSSIAN_TRUNCATED: PLACE(sf_pixel_gaussian_truncated_sample, 0.4f, 1.5f, place) break;
+        case SF_PIXEL_FILTER_BLACKMAN_HARRIS: PLACE(sf_pixel_blackman_harris_sample, 1.5f, place) break;
+        case SF_PIXEL_FILTER_MITCHELL:
+            PLACE(sf_pixel_mitchell_sample, place)
+            NOTE_SIGNS(sf_mitchell)
+            break;
+        case SF_PIXEL_FILTER_LANCZOS:
+            PLACE(sf_pixel_lanczos_sample, place)
+            NOTE_SIGNS(sf_lanczos)
+            break;
+    }
 }
 
 /* Directions through the pixels: forward + x right + y up, before they are normalized. */

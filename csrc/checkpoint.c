@@ -19,10 +19,11 @@
 #include "mask.h"
 #include "render_options.h"
 #include "replacement.h"
+#include "signed_filter.h"
 #include "stopping.h"
 
 #define TEXT_SIZE 96
-#define MAX_ARRAYS 80
+#define MAX_ARRAYS 112
 
 /* ---- the tables ---- */
 
@@ -114,6 +115,20 @@ static const column pixel_columns[] = {
     PIXEL("half_width", half_width, SF_ARRAY_F32, 1),
     PIXEL("reason", reason, SF_ARRAY_U8, 1),
 };
+
+/* Of the pixels of a filter with negative lobes. */
+#define SIGNED(name, field, type, width) {"signed." name, offsetof(sf_signed_pixel, field), type, width}
+static const column signed_columns[] = {
+    SIGNED("positive.count", positive.count, SF_ARRAY_U64, 1),
+    SIGNED("positive.mean", positive.mean, SF_ARRAY_F64, 3),
+    SIGNED("positive.m2", positive.m2, SF_ARRAY_F64, 1),
+    SIGNED("positive.nonfinite", positive.nonfinite, SF_ARRAY_U64, 1),
+    SIGNED("negative.count", negative.count, SF_ARRAY_U64, 1),
+    SIGNED("negative.mean", negative.mean, SF_ARRAY_F64, 3),
+    SIGNED("negative.m2", negative.m2, SF_ARRAY_F64, 1),
+    SIGNED("negative.nonfinite", negative.nonfinite, SF_ARRAY_U64, 1),
+    SIGNED("blocks", blocks, SF_ARRAY_F64, 1),
+};
 #define COUNT(table) (sizeof(table) / sizeof *(table))
 
 /* ---- arrays of a checkpoint ---- */
@@ -182,6 +197,9 @@ static void list_progress(array_list *list, sf_checkpoint *c) {
     if (film->aovs && film->aovs->sums_per_pixel)
         list_array(list, "aov.sums", SF_ARRAY_F64, film->aovs->sums_per_pixel, (uint64_t)film->width * film->height,
                    film->aovs->sums, film->aovs->sums_per_pixel * sizeof *film->aovs->sums);
+    if (film->signed_pixels)
+        list_columns(list, signed_columns, COUNT(signed_columns), film->signed_pixels,
+                     (uint64_t)film->width * film->height, sizeof *film->signed_pixels);
 }
 
 sf_status sf_checkpoint_save(const sf_checkpoint *checkpoint, const char *path, sf_error *error) {

@@ -31,7 +31,8 @@ static void assign_sources(sf_coordinates *coordinates, const sf_plan *plan) {
         *source = (sf_coordinate_source){.first = group->first, .count = group->count, .set = group->bounce - 1};
         switch (group->use) {
             case SF_DIMENSION_PIXEL:
-                source->set = lens || plan->max_bounces > 1 ? plan->max_bounces : 0;
+                /* Apart from the first vertex's, where that has the same dimensions. */
+                source->set = lens || plan->surface_rays > 0 || plan->max_bounces > 1 ? plan->max_bounces : 0;
                 source->dimension = 2;
                 break;
             case SF_DIMENSION_LENS:
@@ -41,6 +42,7 @@ static void assign_sources(sf_coordinates *coordinates, const sf_plan *plan) {
             case SF_DIMENSION_LIGHT: source->dimension = 0; break;
             case SF_DIMENSION_SURFACE: source->dimension = 2; break;
             case SF_DIMENSION_CHOICE: source->dimension = 4; break;
+            case SF_DIMENSION_LOBE: source->dimension = 5; break;
         }
     }
 }

@@ -14,7 +14,11 @@
 
 #define SF_LANES 16  /* samples of a block, and rays of a packet */
 #define SF_BLOCKS 64 /* blocks of a batch: the pixels of a cell */
-#define SF_PATHS (SF_LANES * SF_BLOCKS)
+
+/* Length of an array over a batch's paths: a packet more than there are. Equal places of arrays
+ * that follow one another then lie in different sets of the first-level cache, which has 8 places
+ * of 4,096 bytes each: at a distance of 4,096, ten arrays in a loop evict one another. */
+#define SF_PATHS (SF_LANES * (SF_BLOCKS + 1))
 
 /* Sixteen samples of one pixel, with indices base .. base + 15, of which bit l of `active` says
  * whether base + l is among those wanted. */
@@ -35,7 +39,7 @@ typedef struct sf_coordinate_source {
     uint32_t count;     /* 1 or 2 */
 } sf_coordinate_source;
 
-#define SF_SET_DIMENSIONS 5 /* light 0 1, then pixel, lens or surface 2 3, then choice 4 */
+#define SF_SET_DIMENSIONS 6 /* light 0 1, then pixel, lens or surface 2 3, then choice 4, lobe 5 */
 
 typedef struct sf_coordinates {
     sf_pattern pattern;

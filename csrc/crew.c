@@ -3,14 +3,20 @@
 
 /* A crew: threads that outlive the work they are given. Waking a thread that sleeps takes as long as
  * filling a first cache some ten times, and starting one longer still; so whoever waits looks for
- * a while before it sleeps. A share that its thread has not begun when the caller has done its
- * own is the caller's too: on a busy machine a crew costs little more than no threads at all. */
+ * a while before it sleeps, and short work wakes nobody unless it comes again and again. A share that
+ * its thread has not begun when the caller has done its own is the caller's too: on a busy machine
+ * a crew costs little more than no threads at all.
+ *
+ * A system likes to wake a thread where its waker runs, for the sake of that processor's caches; but this
+ * waker goes on working there, and the two would take turns. So members keep off the caller's
+ * processor. */
 #include "crew.h"
 
 #include "error.h"
 #include "platform.h"
 
-#define LOOK_SECONDS 50e-6 /* about the time to sleep and wake twice */
+#define LOOK_SECONDS 50e-6  /* about the time to sleep and wake twice */
+#define SOON_SECONDS 250e-6 /* work that comes at this pace is worth a member that is awake */
 
 /* A ticket is even where a share waits for its member, odd where someone has taken it. */
 typedef struct member {
@@ -18,6 +24,7 @@ typedef struct member {
     unsigned number;
     sf_atomic_size ticket;
     int asleep;
+    int avoided; /* the processor it keeps off; -1: none */
     pthread_cond_t start;
     pthread_t thread;
 } member;
@@ -29,6 +36,7 @@ struct sf_crew {
     sf_atomic_size working; /* shares of members that are not done */
     unsigned count;
     int caller_sleeps, ending;
+    double last_run; /* when one began */
     sf_crew_work_fn work;
     void *user;
     member *members[SF_CREW_MAX];
@@ -86,6 +94,7 @@ static int join_member(sf_crew *crew) {
     if (!fresh) return 0;
     fresh->crew = crew;
     fresh->number = crew->count;
+    fresh->avoided = -1;
     sf_atomic_store(&fresh->ticket, 1);
     pthread_cond_init(&fresh->start, NULL);
     if (pthread_create(&fresh->thread, NULL, serve, fresh) != 0) {
@@ -97,13 +106,15 @@ static int join_member(sf_crew *crew) {
     return 1;
 }
 
-static void give_tickets(sf_crew *crew, unsigned count) {
+static void give_tickets(sf_crew *crew, unsigned count, int wakes) {
+    int here = sf_processor_now();
     sf_atomic_store(&crew->working, count);
     for (unsigned i = 0; i < count; ++i) {
         member *m = crew->members[i];
+        if (m->avoided != here && sf_thread_avoid(m->thread, here)) m->avoided = here;
         sf_atomic_store(&m->ticket, sf_atomic_load(&m->ticket) + 1);
         pthread_mutex_lock(&crew->mutex);
-        if (m->asleep) pthread_cond_signal(&m->start);
+        if (m->asleep && wakes) pthread_cond_signal(&m->start);
         pthread_mutex_unlock(&crew->mutex);
     }
 }
@@ -121,14 +132,20 @@ static void wait_for_all(sf_crew *crew) {
     pthread_mutex_unlock(&crew->mutex);
 }
 
-int sf_crew_run(sf_crew *crew, unsigned shares, sf_crew_work_fn work, void *user) {
+static int comes_soon(sf_crew *crew) {
+    double before = crew->last_run;
+    crew->last_run = sf_seconds_now();
+    return crew->last_run - before < SOON_SECONDS;
+}
+
+int sf_crew_run(sf_crew *crew, unsigned shares, int is_long, sf_crew_work_fn work, void *user) {
     if (pthread_mutex_trylock(&crew->busy) != 0) return 0;
     unsigned helped = shares - 1 < SF_CREW_MAX ? shares - 1 : SF_CREW_MAX;
     while (crew->count < helped && join_member(crew)) continue;
     if (helped > crew->count) helped = crew->count;
     crew->work = work;
     crew->user = user;
-    give_tickets(crew, helped);
+    give_tickets(crew, helped, comes_soon(crew) || is_long);
     for (unsigned share = shares; share-- > 0;) {
         if (share < helped && !take(crew->members[share])) continue;
         work(user, share);
@@ -151,7 +168,7 @@ sf_status sf_crew_create(sf_crew **out, sf_error *error) {
 void sf_crew_destroy(sf_crew *crew) {
     if (!crew) return;
     crew->ending = 1;
-    give_tickets(crew, crew->count);
+    give_tickets(crew, crew->count, 1);
     for (unsigned i = 0; i < crew->count; ++i) {
         pthread_join(crew->members[i]->thread, NULL);
         pthread_cond_destroy(&crew->members[i]->start);

@@ -11,8 +11,9 @@ typedef void (*sf_crew_work_fn)(void *user, unsigned share);
 
 /* Works shares 0 .. shares - 1, each once: the last on the calling thread, the others each on a
  * thread of the crew, which grows to shares - 1 threads, or on the calling thread where that one
- * could not be had or is late. Returns when all are done: 1; or 0 at once, without any work, where the crew is at
- * work for another caller. */
-int sf_crew_run(sf_crew *crew, unsigned shares, sf_crew_work_fn work, void *user);
+ * could not be had or is late. A member that sleeps is woken where the work `is_long`, some
+ * 50 us or more, or follows other work closely. Returns when all are done: 1; or 0 at once, without any work, where the
+ * crew is at work for another caller. */
+int sf_crew_run(sf_crew *crew, unsigned shares, int is_long, sf_crew_work_fn work, void *user);
 
 #endif

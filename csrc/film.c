@@ -14,6 +14,7 @@
 #include "mask.h"
 #include "platform.h"
 #include "scene_data.h"
+#include "signed_filter.h"
 #include "stopping.h"
 
 #define OWN_CHANNELS 7
@@ -21,8 +22,9 @@
 #define TEXT_SIZE 96
 
 const char *sf_pixel_filter_name(sf_pixel_filter filter) {
-    static const char *const names[] = {"box", "tent", "gaussian"};
-    return (unsigned)filter < 3 ? names[filter] : NULL;
+    static const char *const names[] = {"box",      "tent",   "gaussian", "gaussian_truncated", "blackman_harris",
+                                        "mitchell", "lanczos"};
+    return (unsigned)filter < sizeof names / sizeof *names ? names[filter] : NULL;
 }
 
 const char *sf_stop_rule_name(sf_stop_rule rule) {
@@ -56,8 +58,9 @@ static sf_status allocate_arrays(sf_film *film, bool masked, sf_error *error) {
     size_t traced = (size_t)film->width * film->height, pixels = (size_t)film->crop_width * film->crop_height;
     size_t rows = film->crop_height * sizeof *film->rows;
     size_t pools = sf_stop_pool_count(film) * sizeof *film->decay;
+    size_t parts = film->negative_part > 0 ? traced * sizeof *film->signed_pixels : 0;
     film->memory_bytes =
-        traced * sizeof *film->pixels + pools + rows + pixels * (6 * 4 + 1 + masked) + 9 * SF_ALIGNMENT;
+        traced * sizeof *film->pixels + pools + rows + parts + pixels * (6 * 4 + 1 + masked) + 10 * SF_ALIGNMENT;
     film->memory = sf_pages_alloc(film->memory_bytes);
     if (!film->memory) return sf_fail_memory(error, "the film", film->memory_bytes);
     char *memory = film->memory;
@@ -70,6 +73,7 @@ static sf_status allocate_arrays(sf_film *film, bool masked, sf_error *error) {
     film->samples = take(&memory, pixels * sizeof *film->samples);
     film->reason = take(&memory, pixels);
     film->mask = masked ? take(&memory, pixels) : NULL;
+    film->signed_pixels = parts ? take(&memory, parts) : NULL;
     return SF_STATUS_OK;
 }
 
@@ -92,6 +96,7 @@ sf_status sf_film_create(const sf_render_options *options, bool masked, sf_film 
     film->options.notice_user = NULL;
     film->options.checkpoint_path = NULL;
     film->options.mask = NULL;
+    film->negative_part = sf_filter_negative_part(options->pixel_filter);
     film->parts = malloc(sizeof *film->parts);
     film->part_count = 1;
     sf_status status = film->parts ? allocate_arrays(film, masked, error)

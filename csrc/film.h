@@ -70,6 +70,7 @@ typedef struct sf_film_row {
 } sf_film_row;
 
 struct sf_aov_film;
+struct sf_signed_pixel;
 
 /* A render that went into the film: films that share a pixel and a seed share its samples. */
 typedef struct sf_film_part {
@@ -91,9 +92,11 @@ struct sf_film {
     float *half_width;
     uint32_t *samples;
     uint8_t *reason;
-    struct sf_aov_film *aovs; /* NULL where none was asked for */
-    uint8_t *mask;            /* of the crop: 1 where the pixel counts; NULL: all do */
-    uint64_t counted;         /* pixels of the crop that do */
+    struct sf_signed_pixel *signed_pixels; /* width * height; NULL unless the filter has negative lobes */
+    double negative_part;                  /* of the filter; see signed_filter.h */
+    struct sf_aov_film *aovs;              /* NULL where none was asked for */
+    uint8_t *mask;                         /* of the crop: 1 where the pixel counts; NULL: all do */
+    uint64_t counted;                      /* pixels of the crop that do */
     uint64_t mask_hash;
     uint8_t untouched; /* the sf_stop_reason of pixels without a sample */
     double factor;     /* standard errors in a half-width */

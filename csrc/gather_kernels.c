@@ -17,8 +17,8 @@ static inline void choose_samples(const sf_batch *b, uint32_t first, uint32_t wa
     }
 }
 
-static void gather_block(const sf_batch *b, uint32_t block, sf_block_statistics *out) {
-    uint32_t first = block * SF_LANES, wanted = b->blocks[block].active;
+static void gather_block(const sf_batch *b, uint32_t block, uint32_t wanted, sf_block_statistics *out) {
+    uint32_t first = block * SF_LANES;
     SF_ALIGNED(float) keep[SF_LANES];
     SF_ALIGNED(double) value[SF_LANES], squares[SF_LANES] = {0};
     choose_samples(b, first, wanted, keep);
@@ -45,7 +45,19 @@ static void gather_block(const sf_batch *b, uint32_t block, sf_block_statistics 
 }
 
 static void gather_statistics(sf_batch *b) {
-    for (uint32_t block = 0; block < b->block_count; ++block) gather_block(b, block, b->statistics + block);
+    for (uint32_t block = 0; block < b->block_count; ++block)
+        gather_block(b, block, b->blocks[block].active, b->statistics + block);
 }
 
-const sf_gather_kernels SF_AT_LEVEL(sf_gather_kernels) = {gather_statistics};
+static void gather_by_sign(sf_batch *b) {
+    for (uint32_t block = 0; block < b->block_count; ++block) {
+        sf_block_statistics negative;
+        uint32_t active = b->blocks[block].active;
+        gather_block(b, block, active & ~b->negative[block], b->statistics + block);
+        gather_block(b, block, active & b->negative[block], &negative);
+        b->statistics[block].hits += negative.hits;
+        b->negative_moments[block] = negative.moments;
+    }
+}
+
+const sf_gather_kernels SF_AT_LEVEL(sf_gather_kernels) = {gather_statistics, gather_by_sign};

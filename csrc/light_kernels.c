@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "light_lanes.h"
 #include "rays.h"
 #include "sunfleck/mapping.h"
 
@@ -57,12 +58,6 @@ static inline void connect(sf_batch *b, const light_lanes *lights, uint32_t firs
     b->alive[i] = sum > 0;
 }
 
-/* The quarter of the cell and the cell of the light: rays of a bin start close to each other and
- * end close to each other. */
-static inline uint32_t shadow_bin(uint32_t path, float s, float t) {
-    return path / (SF_PATHS / 4) * 16 + (uint32_t)(int)(s * 4) * 4 + (uint32_t)(int)(t * 4);
-}
-
 static void connect_packet(sf_batch *b, const light_lanes *lights, float (*u)[SF_PATHS], uint32_t first, bool weigh) {
     SF_ALIGNED(float) s[SF_LANES], t[SF_LANES]; /* apart from what is written below */
     memcpy(s, u[0] + first, sizeof s);
@@ -71,20 +66,11 @@ static void connect_packet(sf_batch *b, const light_lanes *lights, float (*u)[SF
         for (uint32_t l = 0; l < SF_LANES; ++l) connect(b, lights, first, l, s[l], t[l], true);
     else
         for (uint32_t l = 0; l < SF_LANES; ++l) connect(b, lights, first, l, s[l], t[l], false);
-    for (uint32_t l = 0; l < SF_LANES; ++l) b->bin[first + l] = shadow_bin(b->path[first + l], s[l], t[l]);
+    for (uint32_t l = 0; l < SF_LANES; ++l) b->bin[first + l] = sf_shadow_bin(b->path[first + l], s[l], t[l]);
 }
 
 static inline void give_piece(light_lanes *lights, uint32_t l, const float piece[SF_LIGHT_FIELDS]) {
     for (int f = 0; f < SF_LIGHT_SAMPLED; ++f) lights->field[f][l] = piece[f];
-}
-
-/* Draws a piece from the alias table: the integer part picks a column, the rest decides. */
-static inline uint32_t choose_piece(const sf_light_table *lights, float u) {
-    uint32_t last = (uint32_t)lights->count - 1;
-    float place = u * (float)lights->count;
-    uint32_t row = (uint32_t)place;
-    row = row < last ? row : last;
-    return place - (float)row < lights->pieces[row][SF_LIGHT_KEEP] ? row : lights->alias[row];
 }
 
 static void light(sf_batch *b, const sf_scene *scene, uint32_t count, bool weigh) {
@@ -96,7 +82,7 @@ static void light(sf_batch *b, const sf_scene *scene, uint32_t count, bool weigh
     for (uint32_t first = 0; first < count; first += SF_LANES) {
         if (several) /* lanes past the end hold no place in the table: they keep what they have */
             for (uint32_t l = 0; l < SF_LANES && first + l < count; ++l)
-                give_piece(&lanes, l, lights->pieces[choose_piece(lights, u[2][first + l])]);
+                give_piece(&lanes, l, lights->pieces[sf_choose_piece(lights, u[2][first + l])]);
         connect_packet(b, &lanes, u, first, weigh);
     }
 }

@@ -10,6 +10,7 @@
 
 #include "error.h"
 #include "film.h"
+#include "signed_filter.h"
 
 static uint32_t smaller(uint32_t a, uint32_t b) { return a < b ? a : b; }
 static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
@@ -93,7 +94,8 @@ static const sf_film_pixel *pixel_at(const sf_film *film, uint32_t x, uint32_t y
 
 /* Adds the films' pixels in their order; false where none has it. Errors of independent estimates
  * add in squares: the mean is sum n_i m_i / N, its half-width sqrt(sum (n_i h_i)^2) / N. */
-static bool merge_pixel(const sf_film *const *films, size_t count, uint32_t x, uint32_t y, sf_film_pixel *out) {
+static bool merge_pixel(const sf_film *const *films, size_t count, uint32_t x, uint32_t y, sf_film *merged,
+                        sf_film_pixel *out) {
     double square = 0;
     size_t found = 0, sampled = 0;
     for (size_t i = 0; i < count; ++i) {
@@ -109,6 +111,9 @@ static bool merge_pixel(const sf_film *const *films, size_t count, uint32_t x, u
             if (!out->moments.count) out->half_width = pixel->half_width;
             sf_film_merge_pixel(out, pixel);
         }
+        if (merged->signed_pixels)
+            sf_signed_merge(out, merged->signed_pixels + (out - merged->pixels),
+                            films[i]->signed_pixels + (pixel - films[i]->pixels), merged->negative_part);
         out->reason = reason;
     }
     if (sampled > 1) out->half_width = (float)(sqrt(square) / (double)out->moments.count);
@@ -163,7 +168,7 @@ static sf_status merge_pixels(sf_film *film, const sf_film *const *films, size_t
         for (uint32_t x = 0; x < film->crop_width; ++x) {
             sf_film_pixel *pixel = sf_film_row_pixels(film, y) + x;
             uint32_t frame_x = x + film->crop_x0, frame_y = y + film->crop_y0;
-            if (!merge_pixel(films, count, frame_x, frame_y, pixel))
+            if (!merge_pixel(films, count, frame_x, frame_y, film, pixel))
                 return sf_fail(error, SF_STATUS_INVALID_VALUE,
                                "pixel (%u, %u) is in none of the films; their crops must fill a rectangle", frame_x,
                                frame_y);

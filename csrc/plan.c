@@ -12,10 +12,14 @@ const char *sf_stage_name(sf_stage stage) {
         case SF_STAGE_CAMERA: return "camera";
         case SF_STAGE_LENS: return "lens";
         case SF_STAGE_INTERSECT: return "intersect";
+        case SF_STAGE_ROUND: return "round shapes";
         case SF_STAGE_MISS: return "miss";
+        case SF_STAGE_SKY: return "sky";
         case SF_STAGE_EMISSION: return "emission";
         case SF_STAGE_CHOOSE_LIGHT: return "choose light";
         case SF_STAGE_LIGHT: return "light";
+        case SF_STAGE_LIGHT_SHAPES: return "light shapes";
+        case SF_STAGE_SCATTER: return "scatter";
         case SF_STAGE_SURFACE: return "surface";
         case SF_STAGE_LAST_SURFACE: return "last surface";
         case SF_STAGE_WEIGHT: return "weight";
@@ -31,24 +35,39 @@ const char *sf_dimension_use_name(sf_dimension_use use) {
         case SF_DIMENSION_LIGHT: return "light";
         case SF_DIMENSION_CHOICE: return "choice";
         case SF_DIMENSION_SURFACE: return "surface";
+        case SF_DIMENSION_LOBE: return "lobe";
     }
     return "unknown dimension";
 }
 
 /* What the scene holds, as far as the plan depends on it. */
 typedef struct contents {
-    bool emission, reflection, background, lens;
+    bool emission, background, lens, round, sky, environment, special;
+    bool spreading; /* surfaces that scatter in more directions than few: diffuse or rough */
+    bool scatter;   /* surfaces that are not diffuse; */
+    bool lobes;     /* of these, such as reflect and refract */
+    sf_light_sampling sampling;
     size_t lights;
 } contents;
 
 static contents survey(const sf_scene *scene) {
-    contents has = {.lights = scene->lights.count, .lens = scene->camera.aperture_radius > 0};
-    for (size_t i = 0; i < scene->info.mesh_count; ++i)
-        for (int c = 0; c < 3; ++c) {
-            has.emission |= scene->meshes[i].mesh.emission[c] > 0;
-            has.reflection |= scene->meshes[i].mesh.albedo[c] > 0;
-        }
+    contents has = {.lights = scene->lights.count,
+                    .lens = scene->camera.aperture_radius > 0,
+                    .round = scene->rounds != NULL,
+                    .environment = scene->environment.pixels != NULL,
+                    .special = scene->lights.special,
+                    .sampling = scene->light_sampling};
+    for (size_t i = 0; i < scene->info.mesh_count; ++i) {
+        has.emission |= sf_emits(&scene->meshes[i].mesh);
+        if (!sf_reflects(&scene->meshes[i].mesh)) continue;
+        sf_scatter scatter = sf_scatter_of(&scene->meshes[i].mesh.material);
+        has.spreading |= scatter == SF_SCATTER_DIFFUSE || scatter >= SF_SCATTER_ROUGH_CONDUCTOR;
+        has.scatter |= scatter != SF_SCATTER_DIFFUSE;
+        has.lobes |= scatter == SF_SCATTER_SMOOTH_DIELECTRIC || scatter == SF_SCATTER_ROUGH_DIELECTRIC;
+    }
     for (int c = 0; c < 3; ++c) has.background |= scene->background[c] > 0;
+    has.sky = has.environment;
+    for (size_t i = 0; i < scene->sky.sun_count; ++i) has.sky |= scene->sky.suns[i].height > 0;
     return has;
 }
 
@@ -57,16 +76,28 @@ static uint32_t choose_stages(const contents *has, uint32_t max_bounces) {
 #define NEED(condition, stage) stages |= (uint32_t)((condition) != 0) << (stage)
     NEED(!has->lens, SF_STAGE_CAMERA);
     NEED(has->lens, SF_STAGE_LENS);
+    NEED(has->round, SF_STAGE_ROUND);
     NEED(has->background, SF_STAGE_MISS);
+    NEED(has->sky, SF_STAGE_SKY);
     NEED(has->emission, SF_STAGE_EMISSION);
-    /* Light arrives from lights, which are sampled, or from the background, which is not. */
-    bool bounces = max_bounces > 0 && has->reflection && (has->lights || has->background);
-    bool surface = bounces && max_bounces > 1, last = bounces && has->background;
-    NEED(bounces && has->lights > 0, SF_STAGE_LIGHT);
-    NEED(bounces && has->lights > 1, SF_STAGE_CHOOSE_LIGHT);
+    /* Light arrives from lights, which are sampled, or from the background, which is not. An
+     * environment is found by both, since most of it is wide. */
+    bool sampled = has->lights && has->sampling != SF_LIGHT_SAMPLING_SURFACE;
+    bool found = has->sampling == SF_LIGHT_SAMPLING_SURFACE
+                     ? has->emission || has->sky
+                     : has->environment && has->sampling == SF_LIGHT_SAMPLING_BOTH;
+    bool reflection = has->spreading || has->scatter, seen = has->scatter && has->sky;
+    bool bounces = max_bounces > 0 && reflection && (sampled || found || seen || has->background);
+    bool surface = bounces && max_bounces > 1, last = bounces && (has->background || found);
+    sampled &= has->spreading; /* smooth surfaces have no use for it */
+    NEED(bounces && sampled, SF_STAGE_LIGHT);
+    NEED(bounces && sampled && has->lights > 1, SF_STAGE_CHOOSE_LIGHT);
+    NEED(bounces && sampled && has->special, SF_STAGE_LIGHT_SHAPES);
+    NEED(bounces && has->scatter, SF_STAGE_SCATTER);
     NEED(surface, SF_STAGE_SURFACE);
     NEED(last, SF_STAGE_LAST_SURFACE);
-    NEED(has->lights && (surface || last), SF_STAGE_WEIGHT);
+    NEED(sampled && has->sampling == SF_LIGHT_SAMPLING_BOTH && (surface || last || (bounces && has->scatter)),
+         SF_STAGE_WEIGHT);
 #undef NEED
     return stages;
 }
@@ -91,8 +122,10 @@ void sf_plan_derive(const sf_scene *scene, sf_plan *plan) {
             ++plan->shadow_rays;
         }
         if (sf_plan_has(plan, SF_STAGE_CHOOSE_LIGHT)) add_dimensions(plan, SF_DIMENSION_CHOICE, bounce, 1);
-        if (sf_plan_has(plan, bounce < plan->max_bounces ? SF_STAGE_SURFACE : SF_STAGE_LAST_SURFACE)) {
-            add_dimensions(plan, SF_DIMENSION_SURFACE, bounce, 2);
+        bool scatter = sf_plan_has(plan, SF_STAGE_SCATTER);
+        if (scatter || sf_plan_has(plan, bounce < plan->max_bounces ? SF_STAGE_SURFACE : SF_STAGE_LAST_SURFACE)) {
+            if (has.spreading) add_dimensions(plan, SF_DIMENSION_SURFACE, bounce, 2);
+            if (scatter && has.lobes) add_dimensions(plan, SF_DIMENSION_LOBE, bounce, 1);
             ++plan->surface_rays;
         }
     }

@@ -207,6 +207,30 @@ static inline void sf_restore_denormals(unsigned mode) {
 #endif
 }
 
+/* The processor that the calling thread is on now; -1 where the system does not say. */
+static inline int sf_processor_now(void) {
+#if defined(__linux__)
+    return sched_getcpu();
+#else
+    return -1;
+#endif
+}
+
+/* Lets a thread run where the calling one may, but not on this processor; 0, and nothing done, where
+ * that leaves none, or the system refuses or can't. */
+static inline int sf_thread_avoid(pthread_t thread, int processor) {
+#if defined(__linux__)
+    cpu_set_t allowed;
+    if (processor < 0 || processor >= CPU_SETSIZE || sched_getaffinity(0, sizeof allowed, &allowed) != 0) return 0;
+    CPU_CLR(processor, &allowed);
+    return CPU_COUNT(&allowed) > 0 && pthread_setaffinity_np(thread, sizeof allowed, &allowed) == 0;
+#else
+    (void)thread;
+    (void)processor;
+    return 0;
+#endif
+}
+
 /* The number of processors this process may run on, at least 1. */
 unsigned sf_processor_count(void);
 

@@ -97,16 +97,15 @@ static const char *scramble_name_at(unsigned i) { return sf_scramble_name((sf_sc
 /* Writes the index of `name` among those that `name_at` lists up to NULL, or fails with all. */
 static sf_status find_name(const char *what, const char *name, const char *(*name_at)(unsigned), unsigned *index,
                            sf_error *error) {
-    char names[256] = "";
-    size_t length = 0;
-    for (unsigned i = 0; name_at(i); ++i) {
-        if (name && strcmp(name, name_at(i)) == 0) {
+    for (unsigned i = 0; name && name_at(i); ++i)
+        if (strcmp(name, name_at(i)) == 0) {
             *index = i;
             return SF_STATUS_OK;
         }
-        if (length < sizeof names)
-            length += (size_t)snprintf(names + length, sizeof names - length, "%s%s", i ? ", " : "", name_at(i));
-    }
+    char names[256] = "";
+    size_t length = 0;
+    for (unsigned i = 0; name_at(i) && length < sizeof names; ++i)
+        length += (size_t)snprintf(names + length, sizeof names - length, "%s%s", i ? ", " : "", name_at(i));
     return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s is \"%.64s\"; choose one of %s", what, name ? name : "", names);
 }
 

@@ -106,8 +106,12 @@ static void share_out(fill_job *jobs, unsigned threads, const sf_point_set *set,
 
 static void fill_numbered(void *user, unsigned share) { fill_share((fill_job *)user + share); }
 
-static void work_shares(fill_job *jobs, unsigned threads, sf_crew *crew) {
-    if (threads > 1 && crew && sf_crew_run(crew, threads, fill_numbered, jobs)) return;
+/* What even the quickest pattern takes some 50 us for. */
+#define LONG_WORDS ((size_t)1 << 19)
+
+static void work_shares(fill_job *jobs, unsigned threads, const sf_points_options *options) {
+    int is_long = jobs[0].rows >= LONG_WORDS / threads / options->dims;
+    if (threads > 1 && options->crew && sf_crew_run(options->crew, threads, is_long, fill_numbered, jobs)) return;
     /* The last share is the caller's, and those whose thread could not be had. */
     for (unsigned i = 0; i + 1 < threads; ++i)
         jobs[i].started = pthread_create(&jobs[i].thread, NULL, fill_share, jobs + i) == 0;
@@ -128,7 +132,7 @@ static sf_status fill(const sf_point_set *set, uint64_t first, size_t count, sf_
     fill_job *jobs = (fill_job *)(void *)(scratch + threads * scratch_words(&set->options));
     jobs[0].scratch = scratch;
     share_out(jobs, threads, set, first, count, type, out);
-    work_shares(jobs, threads, set->options.crew);
+    work_shares(jobs, threads, &set->options);
     sf_aligned_free(scratch);
     return SF_STATUS_OK;
 }

@@ -91,6 +91,7 @@ static sf_status prepare(sf_rounds *r, sf_error *error) {
                        o->unbiased ? "two, with unbiased," : "one", r->region);
     r->context.camera = sf_camera_frame_of(&scene->camera, o->width, o->height);
     r->context.filter = o->pixel_filter;
+    r->context.signed_filter = r->film->negative_part > 0;
     r->context.seeds = o->seeds;
     r->context.isa = sf_isa_active();
     r->factors = sf_stop_factors_of(o);

@@ -105,48 +105,80 @@ static void philox4x32(const uint32_t *counter, const uint32_t *key, size_t bloc
  * then 128 words, of which the blocks that become floats are multiples. */
 enum { WIDE_SETS = 3, WIDE_BESIDE = 8, WIDE_GROUP = WIDE_SETS * SF_LANES64 + WIDE_BESIDE };
 
-/* Registers of blocks, and a few blocks beside them in the core's own multiplier, which lanes leave
- * idle. */
+#define PHILOX_A UINT64_C(0xd2e7470ee14c6c93)
+#define PHILOX_B UINT64_C(0xca5a826395121157)
+#define PHILOX_STEP0 UINT64_C(0x9e3779b97f4a7c15)
+#define PHILOX_STEP1 UINT64_C(0xbb67ae8584caa73b)
+
+/* Blocks of one fill differ in the first word of the counter only, so that of the first two rounds'
+ * four products two are the same in all of them. This is what two rounds XOR to the others, and the
+ * last word that they leave. */
+typedef struct philox4x64_opening {
+    uint64_t second, first, third, last;
+} philox4x64_opening;
+
+static philox4x64_opening philox4x64_open(const uint64_t *counter, const uint64_t *key) {
+    uint64_t x0 = sf_multiply_high64(PHILOX_B, counter[2]) ^ counter[1] ^ key[0];
+    return (philox4x64_opening){.second = counter[3] ^ key[1],
+                                .first = PHILOX_B * counter[2] ^ (key[0] + PHILOX_STEP0),
+                                .third = sf_multiply_high64(PHILOX_A, x0) ^ (key[1] + PHILOX_STEP1),
+                                .last = PHILOX_A * x0};
+}
+
+/* The first two rounds of blocks whose counters begin with n. */
+static inline void philox4x64_begin_lanes(const philox4x64_opening *o, sf_lanes64 n, sf_lanes64 x[4]) {
+    sf_lanes64 second = multiply_high(n, PHILOX_A) ^ o->second;
+    x[0] = multiply_high(second, PHILOX_B) ^ o->first;
+    x[1] = second * PHILOX_B;
+    x[2] = n * PHILOX_A ^ o->third;
+    x[3] = all_lanes(o->last);
+}
+static inline void philox4x64_begin(const philox4x64_opening *o, uint64_t n, uint64_t x[4]) {
+    uint64_t second = sf_multiply_high64(PHILOX_A, n) ^ o->second;
+    x[0] = sf_multiply_high64(PHILOX_B, second) ^ o->first;
+    x[1] = second * PHILOX_B;
+    x[2] = n * PHILOX_A ^ o->third;
+    x[3] = o->last;
+}
+
+/* The other eight rounds of registers of blocks, and of a few blocks beside them in the core's own
+ * multiplier, which lanes leave idle. */
 static inline void philox4x64_rounds(sf_lanes64 x[WIDE_SETS][4], uint64_t beside[WIDE_BESIDE][4],
                                      const uint64_t key[2]) {
-    const uint64_t a = UINT64_C(0xd2e7470ee14c6c93), b = UINT64_C(0xca5a826395121157);
-    uint64_t k0 = key[0], k1 = key[1];
-    for (int round = 0; round < 10; ++round) {
+    uint64_t k0 = key[0] + 2 * PHILOX_STEP0, k1 = key[1] + 2 * PHILOX_STEP1;
+    for (int round = 2; round < 10; ++round) {
         for (int s = 0; s < WIDE_SETS; ++s) {
-            sf_lanes64 p = multiply_high(x[s][0], a), q = multiply_high(x[s][2], b);
-            sf_lanes64 y1 = x[s][2] * b, y3 = x[s][0] * a;
+            sf_lanes64 p = multiply_high(x[s][0], PHILOX_A), q = multiply_high(x[s][2], PHILOX_B);
+            sf_lanes64 y1 = x[s][2] * PHILOX_B, y3 = x[s][0] * PHILOX_A;
             x[s][0] = q ^ x[s][1] ^ k0;
             x[s][2] = p ^ x[s][3] ^ k1;
             x[s][1] = y1;
             x[s][3] = y3;
         }
         for (int s = 0; s < WIDE_BESIDE; ++s) {
-            uint64_t *y = beside[s], p = sf_multiply_high64(a, y[0]), q = sf_multiply_high64(b, y[2]);
-            uint64_t y1 = b * y[2], y3 = a * y[0];
+            uint64_t *y = beside[s], p = sf_multiply_high64(PHILOX_A, y[0]), q = sf_multiply_high64(PHILOX_B, y[2]);
+            uint64_t y1 = PHILOX_B * y[2], y3 = PHILOX_A * y[0];
             y[0] = q ^ y[1] ^ k0;
             y[2] = p ^ y[3] ^ k1;
             y[1] = y1;
             y[3] = y3;
         }
-        k0 += UINT64_C(0x9e3779b97f4a7c15);
-        k1 += UINT64_C(0xbb67ae8584caa73b);
+        k0 += PHILOX_STEP0;
+        k1 += PHILOX_STEP1;
     }
 }
 
 /* Whole groups of WIDE_GROUP; returns how many blocks they are. */
 static size_t philox4x64_lanes(const uint64_t *counter, const uint64_t *key, size_t blocks, uint64_t *SF_RESTRICT out) {
+    const philox4x64_opening opening = philox4x64_open(counter, key);
     size_t done = 0;
     for (; blocks - done >= WIDE_GROUP; done += WIDE_GROUP) {
         sf_lanes64 x[WIDE_SETS][4];
         uint64_t first = counter[0] + done, beside[WIDE_BESIDE][4];
-        for (int s = 0; s < WIDE_SETS; ++s) {
-            x[s][0] = all_lanes(first + (uint64_t)(s * SF_LANES64)) + lane_numbers();
-            for (int w = 1; w < 4; ++w) x[s][w] = all_lanes(counter[w]);
-        }
-        for (int s = 0; s < WIDE_BESIDE; ++s) {
-            beside[s][0] = first + WIDE_SETS * SF_LANES64 + (uint64_t)s;
-            for (int w = 1; w < 4; ++w) beside[s][w] = counter[w];
-        }
+        for (int s = 0; s < WIDE_SETS; ++s)
+            philox4x64_begin_lanes(&opening, all_lanes(first + (uint64_t)(s * SF_LANES64)) + lane_numbers(), x[s]);
+        for (int s = 0; s < WIDE_BESIDE; ++s)
+            philox4x64_begin(&opening, first + WIDE_SETS * SF_LANES64 + (uint64_t)s, beside[s]);
         philox4x64_rounds(x, beside, key);
         for (int s = 0; s < WIDE_SETS; ++s) sf_lanes64_interleave4(x[s], out + 4 * (done + (size_t)(s * SF_LANES64)));
         memcpy(out + 4 * (done + WIDE_SETS * SF_LANES64), beside, sizeof beside);

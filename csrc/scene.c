@@ -10,13 +10,12 @@
 #include "platform.h"
 #include "scene_data.h"
 
-#define LENGTH_LIMIT 1e12f   /* volumes, which Embree computes, stay finite */
-#define RADIANCE_LIMIT 1e18f /* sums and products with weights stay finite */
 #define PAGE_SIZE 4096
 
 sf_mesh sf_mesh_default(void) {
     sf_mesh mesh = {0};
     for (int c = 0; c < 3; ++c) mesh.albedo[c] = 0.5f;
+    mesh.material = sf_material_default();
     return mesh;
 }
 
@@ -28,6 +27,7 @@ sf_status sf_scene_create(sf_scene **out, sf_error *error) {
     if (!scene) return sf_fail_memory(error, "a scene", sizeof *scene);
     scene->camera = sf_camera_default();
     scene->max_bounces = 5;
+    scene->solid_angle_ratio = 1;
     for (int c = 0; c < 3; ++c) {
         scene->info.bounds_lower[c] = INFINITY;
         scene->info.bounds_upper[c] = -INFINITY;
@@ -54,16 +54,19 @@ void sf_scene_destroy(sf_scene *scene) {
     free(scene->meshes);
     for (int c = 0; c < SF_MESH_COLUMNS; ++c) sf_aligned_free(scene->mesh_table.columns[c]);
     sf_lights_free(&scene->lights);
+    sf_sky_free(&scene->sky);
+    sf_aligned_free(scene->rounds);
+    free(scene->suns);
     free(scene);
 }
 
-static sf_status refuse_committed(const sf_scene *scene, sf_error *error) {
+sf_status sf_scene_refuse_committed(const sf_scene *scene, sf_error *error) {
     if (!scene->committed) return SF_STATUS_OK;
     return sf_fail(error, SF_STATUS_INVALID_VALUE, "the scene is committed; it can't be changed any more");
 }
 
 /* Refuses a value that is not in [0, upper]; NaN is in no interval. */
-static sf_status check_color(const char *what, const float *color, float upper, sf_error *error) {
+sf_status sf_scene_check_color(const char *what, const float *color, float upper, sf_error *error) {
     for (int c = 0; c < 3; ++c)
         if (!(color[c] >= 0 && color[c] <= upper))
             return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s[%d] is %g; it must be in [0, %g]", what, c,
@@ -71,11 +74,11 @@ static sf_status check_color(const char *what, const float *color, float upper, 
     return SF_STATUS_OK;
 }
 
-static sf_status check_vector(const char *what, const float *v, sf_error *error) {
+sf_status sf_scene_check_vector(const char *what, const float *v, sf_error *error) {
     for (int c = 0; c < 3; ++c)
-        if (!(fabsf(v[c]) <= LENGTH_LIMIT))
+        if (!(fabsf(v[c]) <= SF_LENGTH_LIMIT))
             return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s[%d] is %g; it must be finite and at most %g in size",
-                           what, c, (double)v[c], (double)LENGTH_LIMIT);
+                           what, c, (double)v[c], (double)SF_LENGTH_LIMIT);
     return SF_STATUS_OK;
 }
 
@@ -88,17 +91,18 @@ static sf_status check_mesh(const sf_mesh *mesh, size_t number, sf_error *error)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "mesh %zu has %zu triangles; it must have 1 to 2^32 - 1", number,
                        mesh->triangles ? mesh->triangle_count : 0);
     for (size_t i = 0; i < 3 * mesh->vertex_count; ++i)
-        if (!(fabsf(mesh->vertices[i]) <= LENGTH_LIMIT))
+        if (!(fabsf(mesh->vertices[i]) <= SF_LENGTH_LIMIT))
             return sf_fail(error, SF_STATUS_INVALID_VALUE,
                            "mesh %zu: coordinate %zu of vertex %zu is %g; it must be finite and at most %g in size",
-                           number, i % 3, i / 3, (double)mesh->vertices[i], (double)LENGTH_LIMIT);
+                           number, i % 3, i / 3, (double)mesh->vertices[i], (double)SF_LENGTH_LIMIT);
     for (size_t i = 0; i < 3 * mesh->triangle_count; ++i)
         if (mesh->triangles[i] >= mesh->vertex_count)
             return sf_fail(error, SF_STATUS_INVALID_VALUE,
                            "mesh %zu: triangle %zu has vertex index %u; the mesh has %zu vertices", number, i / 3,
                            mesh->triangles[i], mesh->vertex_count);
-    sf_status status = check_color("albedo", mesh->albedo, 1, error);
-    return status ? status : check_color("emission", mesh->emission, RADIANCE_LIMIT, error);
+    sf_status status = sf_scene_check_color("albedo", mesh->albedo, 1, error);
+    if (!status) status = sf_scene_check_color("emission", mesh->emission, SF_RADIANCE_LIMIT, error);
+    return status ? status : sf_material_check(&mesh->material, error);
 }
 
 /* Embree loads the last vertex and the last index triple with 16-byte reads: up to 4 bytes past
@@ -114,7 +118,7 @@ static sf_status copy_padded(const void **array, void **copy, size_t bytes, sf_s
     return SF_STATUS_OK;
 }
 
-static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count) {
+uint64_t sf_scene_hash(uint64_t hash, const void *bytes, size_t count) {
     const unsigned char *p = bytes;
     uint64_t word;
     hash = sf_hash64(hash, count);
@@ -142,10 +146,11 @@ static void survey_mesh(sf_scene_info *info, const sf_mesh *mesh, size_t *degene
                           mesh->vertices + 3 * (size_t)t[2], n);
         *degenerate += n[0] * n[0] + n[1] * n[1] + n[2] * n[2] == 0;
     }
-    info->hash = hash_bytes(info->hash, mesh->vertices, 12 * mesh->vertex_count);
-    info->hash = hash_bytes(info->hash, mesh->triangles, 12 * mesh->triangle_count);
-    info->hash = hash_bytes(info->hash, mesh->albedo, sizeof mesh->albedo);
-    info->hash = hash_bytes(info->hash, mesh->emission, sizeof mesh->emission);
+    info->hash = sf_scene_hash(info->hash, mesh->vertices, 12 * mesh->vertex_count);
+    info->hash = sf_scene_hash(info->hash, mesh->triangles, 12 * mesh->triangle_count);
+    info->hash = sf_scene_hash(info->hash, mesh->albedo, sizeof mesh->albedo);
+    info->hash = sf_scene_hash(info->hash, mesh->emission, sizeof mesh->emission);
+    info->hash = sf_material_hash(info->hash, &mesh->material);
     info->triangle_count += mesh->triangle_count;
     info->degenerate_count += *degenerate;
 }
@@ -165,7 +170,7 @@ static sf_status attach_to_embree(sf_scene *scene, const sf_mesh *mesh, uint32_t
     return sf_fail(error, SF_STATUS_BACKEND, "Embree refused mesh %u (its error %d)", number, code);
 }
 
-static sf_status reserve_mesh(sf_scene *scene, sf_error *error) {
+sf_status sf_scene_reserve_mesh(sf_scene *scene, sf_error *error) {
     if (scene->info.mesh_count < scene->mesh_capacity) return SF_STATUS_OK;
     size_t capacity = scene->mesh_capacity ? 2 * scene->mesh_capacity : 8;
     sf_scene_mesh *meshes = realloc(scene->meshes, capacity * sizeof *meshes);
@@ -176,17 +181,16 @@ static sf_status reserve_mesh(sf_scene *scene, sf_error *error) {
 }
 
 sf_status sf_scene_add_mesh(sf_scene *scene, const sf_mesh *mesh, sf_error *error) {
-    sf_status status = refuse_committed(scene, error);
+    sf_status status = sf_scene_refuse_committed(scene, error);
     size_t number = scene->info.mesh_count;
     if (!status) status = check_mesh(mesh, number, error);
-    if (!status) status = reserve_mesh(scene, error);
+    if (!status) status = sf_scene_reserve_mesh(scene, error);
     if (status) return status;
 
     sf_scene_info info = scene->info; /* kept only when all went well */
     size_t degenerate;
     survey_mesh(&info, mesh, &degenerate);
-    bool emissive = mesh->emission[0] > 0 || mesh->emission[1] > 0 || mesh->emission[2] > 0;
-    if (emissive && degenerate == mesh->triangle_count)
+    if (sf_emits(mesh) && degenerate == mesh->triangle_count)
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
                        "mesh %zu emits light but all of its %zu triangles have area 0; a light needs an area", number,
                        mesh->triangle_count);
@@ -211,21 +215,21 @@ sf_status sf_scene_add_mesh(sf_scene *scene, const sf_mesh *mesh, sf_error *erro
 }
 
 sf_status sf_scene_set_camera(sf_scene *scene, const sf_camera *camera, sf_error *error) {
-    sf_status status = refuse_committed(scene, error);
-    if (!status) status = check_vector("camera position", camera->position, error);
-    if (!status) status = check_vector("camera target", camera->target, error);
-    if (!status) status = check_vector("camera up", camera->up, error);
+    sf_status status = sf_scene_refuse_committed(scene, error);
+    if (!status) status = sf_scene_check_vector("camera position", camera->position, error);
+    if (!status) status = sf_scene_check_vector("camera target", camera->target, error);
+    if (!status) status = sf_scene_check_vector("camera up", camera->up, error);
     if (status) return status;
     if (!(camera->vertical_fov > 0 && camera->vertical_fov < 180))
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "vertical_fov is %g; it must be in (0, 180) degrees",
                        (double)camera->vertical_fov);
-    if (!(camera->aperture_radius >= 0 && camera->aperture_radius <= LENGTH_LIMIT))
+    if (!(camera->aperture_radius >= 0 && camera->aperture_radius <= SF_LENGTH_LIMIT))
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "aperture_radius is %g; it must be in [0, %g]",
-                       (double)camera->aperture_radius, (double)LENGTH_LIMIT);
-    if (!(camera->focus_distance >= 0 && camera->focus_distance <= LENGTH_LIMIT))
+                       (double)camera->aperture_radius, (double)SF_LENGTH_LIMIT);
+    if (!(camera->focus_distance >= 0 && camera->focus_distance <= SF_LENGTH_LIMIT))
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
                        "focus_distance is %g; it must be in (0, %g], or 0 for the target's",
-                       (double)camera->focus_distance, (double)LENGTH_LIMIT);
+                       (double)camera->focus_distance, (double)SF_LENGTH_LIMIT);
     double f[3], f2 = 0, up2 = 0, cross2 = 0;
     for (int c = 0; c < 3; ++c) {
         f[c] = (double)camera->target[c] - camera->position[c];
@@ -250,14 +254,33 @@ sf_status sf_scene_set_camera(sf_scene *scene, const sf_camera *camera, sf_error
 }
 
 sf_status sf_scene_set_background(sf_scene *scene, const float radiance[3], sf_error *error) {
-    sf_status status = refuse_committed(scene, error);
-    if (!status) status = check_color("background", radiance, RADIANCE_LIMIT, error);
+    sf_status status = sf_scene_refuse_committed(scene, error);
+    if (!status) status = sf_scene_check_color("background", radiance, SF_RADIANCE_LIMIT, error);
     if (!status) memcpy(scene->background, radiance, sizeof scene->background);
     return status;
 }
 
+sf_status sf_scene_set_light_sampling(sf_scene *scene, sf_light_sampling sampling, sf_error *error) {
+    sf_status status = sf_scene_refuse_committed(scene, error);
+    if (status) return status;
+    if (!sf_light_sampling_name(sampling))
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "light_sampling is %d; it must be one of the enumeration's",
+                       (int)sampling);
+    scene->light_sampling = sampling;
+    return SF_STATUS_OK;
+}
+
+sf_status sf_scene_set_solid_angle_ratio(sf_scene *scene, float ratio, sf_error *error) {
+    sf_status status = sf_scene_refuse_committed(scene, error);
+    if (status) return status;
+    if (!(ratio >= 0))
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "solid_angle_ratio is %g; it must be 0 or more", (double)ratio);
+    scene->solid_angle_ratio = ratio;
+    return SF_STATUS_OK;
+}
+
 sf_status sf_scene_set_max_bounces(sf_scene *scene, uint32_t max_bounces, sf_error *error) {
-    sf_status status = refuse_committed(scene, error);
+    sf_status status = sf_scene_refuse_committed(scene, error);
     if (status) return status;
     if (max_bounces > SF_MAX_BOUNCES)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "max_bounces is %u; it must be 0 to %d", max_bounces,
@@ -275,11 +298,24 @@ static sf_status build_mesh_table(sf_scene *scene, sf_error *error) {
         if (!column) return sf_fail_memory(error, "the table of meshes", rows * sizeof *column);
         memset(column, 0, rows * sizeof *column);
     }
-    for (size_t i = 0; i < scene->info.mesh_count; ++i)
+    for (size_t i = 0; i < scene->info.mesh_count; ++i) {
         for (int c = 0; c < 3; ++c) {
             table->columns[SF_MESH_ALBEDO_R + c][i] = scene->meshes[i].mesh.albedo[c];
             table->columns[SF_MESH_EMISSION_R + c][i] = scene->meshes[i].mesh.emission[c];
         }
+        sf_material_tabulate(table, i, &scene->meshes[i].mesh);
+    }
+    return SF_STATUS_OK;
+}
+
+static sf_status build_rounds(sf_scene *scene, sf_error *error) {
+    const sf_scene_info *info = &scene->info;
+    if (info->sphere_count + info->disk_count == 0) return SF_STATUS_OK;
+    size_t bytes = (info->mesh_count + 1) * sizeof *scene->rounds;
+    scene->rounds = sf_aligned_alloc(bytes);
+    if (!scene->rounds) return sf_fail_memory(error, "the table of spheres and disks", bytes);
+    memset(scene->rounds, 0, bytes);
+    for (size_t i = 0; i < info->mesh_count; ++i) scene->rounds[i] = scene->meshes[i].round;
     return SF_STATUS_OK;
 }
 
@@ -299,16 +335,37 @@ static void drop_tables(sf_scene *scene) {
         scene->mesh_table.columns[c] = NULL;
     }
     sf_lights_free(&scene->lights);
-    memset(&scene->lights, 0, sizeof scene->lights);
+    sf_sky_free(&scene->sky);
+    sf_aligned_free(scene->rounds);
+    scene->rounds = NULL;
+}
+
+/* What decides the picture beside the shapes; a scene without the later ones keeps its hash. */
+static uint64_t hash_settings(const sf_scene *scene) {
+    uint64_t hash = scene->info.hash;
+    hash = sf_scene_hash(hash, &scene->camera, sizeof scene->camera);
+    hash = sf_scene_hash(hash, scene->background, sizeof scene->background);
+    hash = sf_hash64(hash, scene->max_bounces);
+    if (scene->light_sampling) hash = sf_hash64(hash, (uint64_t)scene->light_sampling);
+    if (scene->solid_angle_ratio != 1) hash = sf_scene_hash(hash, &scene->solid_angle_ratio, sizeof(float));
+    if (scene->info.sun_count) hash = sf_scene_hash(hash, scene->suns, scene->info.sun_count * sizeof *scene->suns);
+    const sf_environment *e = &scene->environment;
+    if (!e->pixels) return hash;
+    hash = sf_scene_hash(hash, e->pixels, (size_t)e->width * e->height * 12);
+    hash = sf_hash64(hash, (uint64_t)e->width << 32 | e->height);
+    hash = sf_scene_hash(hash, e->up, sizeof e->up);
+    return sf_scene_hash(hash, &e->rotation, sizeof e->rotation);
 }
 
 sf_status sf_scene_commit(sf_scene *scene, sf_error *error) {
-    sf_status status = refuse_committed(scene, error);
+    sf_status status = sf_scene_refuse_committed(scene, error);
     if (status) return status;
     if (scene->info.mesh_count == 0)
-        return sf_fail(error, SF_STATUS_INVALID_VALUE, "the scene has no mesh; add at least one");
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "the scene has no mesh, sphere or disk; add at least one");
     drop_tables(scene);
     status = build_mesh_table(scene, error);
+    if (!status) status = build_rounds(scene, error);
+    if (!status) status = sf_sky_build(scene, error);
     if (!status) status = sf_lights_build(scene, error);
     if (status) return status;
     rtcCommitScene(scene->embree);
@@ -321,9 +378,7 @@ sf_status sf_scene_commit(sf_scene *scene, sf_error *error) {
     sf_scene_info *info = &scene->info;
     info->light_count = scene->lights.count;
     info->rectangle_light_count = scene->lights.rectangle_count;
-    info->hash = hash_bytes(info->hash, &scene->camera, sizeof scene->camera);
-    info->hash = hash_bytes(info->hash, scene->background, sizeof scene->background);
-    info->hash = sf_hash64(info->hash, scene->max_bounces);
+    info->hash = hash_settings(scene);
     scene->normal_scale = normal_scale(info);
     sf_plan_derive(scene, &scene->plan);
     scene->committed = true;
@@ -337,7 +392,10 @@ static sf_status require_committed(const sf_scene *scene, sf_error *error) {
 
 sf_status sf_scene_get_info(const sf_scene *scene, sf_scene_info *info, sf_error *error) {
     sf_status status = require_committed(scene, error);
-    if (!status) *info = scene->info;
+    if (!status) {
+        *info = scene->info;
+        info->mesh_count -= info->sphere_count + info->disk_count; /* which have numbers among the meshes */
+    }
     return status;
 }
 

@@ -8,6 +8,7 @@
 #include <stdbool.h>
 
 #include "embree.h"
+#include "sunfleck/discrete.h"
 #include "sunfleck/scene.h"
 
 /* Per-mesh values by Embree's geometry number, as columns. The last row, at `mesh_count`, is
@@ -20,16 +21,49 @@ typedef enum sf_mesh_column {
     SF_MESH_EMISSION_G,
     SF_MESH_EMISSION_B,
     SF_MESH_LIGHT_PDF, /* density, by area, with which light sampling finds a point of the mesh */
+    SF_MESH_PASS_R,    /* what every path takes along from the surface: the albedo of diffuse surfaces and */
+    SF_MESH_PASS_G,    /* mirrors, 1 where it depends on directions */
+    SF_MESH_PASS_B,
+    SF_MESH_SCATTER, /* sf_scatter, as a float */
+    SF_MESH_IOR,
+    SF_MESH_ALPHA, /* GGX's */
     SF_MESH_COLUMNS
 } sf_mesh_column;
+
+/* The ways of scattering that vertices are sorted by. */
+typedef enum sf_scatter {
+    SF_SCATTER_DIFFUSE,
+    SF_SCATTER_MIRROR,
+    SF_SCATTER_SMOOTH_CONDUCTOR,
+    SF_SCATTER_SMOOTH_DIELECTRIC,
+    SF_SCATTER_ROUGH_CONDUCTOR,
+    SF_SCATTER_ROUGH_DIELECTRIC,
+    SF_SCATTERS
+} sf_scatter;
 
 typedef struct sf_mesh_table {
     float *columns[SF_MESH_COLUMNS];
     uint32_t miss; /* the row of a miss */
 } sf_mesh_table;
 
+/* What light is sampled from. The last three are not kinds of a piece but ways to sample one. */
+typedef enum sf_light_kind {
+    SF_LIGHT_IS_TRIANGLE,
+    SF_LIGHT_IS_PARALLELOGRAM,
+    SF_LIGHT_IS_DISK,
+    SF_LIGHT_IS_SPHERE,
+    SF_LIGHT_IS_SUN,
+    SF_LIGHT_IS_DIRECTION, /* a sun of angle 0 */
+    SF_LIGHT_IS_ENVIRONMENT,
+    SF_LIGHT_BY_AREA, /* of the first three */
+    SF_LIGHT_BY_TRIANGLE_ANGLE,
+    SF_LIGHT_BY_RECTANGLE_ANGLE,
+    SF_LIGHT_KINDS
+} sf_light_kind;
+
 /* What is known of a piece that light is sampled from: a triangle, or a parallelogram
- * origin + s edge1 + t edge2 with unit normal along edge1 x edge2. */
+ * origin + s edge1 + t edge2 with unit normal along edge1 x edge2; of a disk, the middle and two
+ * radii; of a sphere, the middle and, as edge1, radius 0 0; of a sun, its direction and frame. */
 typedef enum sf_light_field {
     SF_LIGHT_ORIGIN_X,
     SF_LIGHT_ORIGIN_Y,
@@ -50,7 +84,16 @@ typedef enum sf_light_field {
     SF_LIGHT_RECTANGLE,               /* 1 for a parallelogram, 0 for a triangle */
     SF_LIGHT_SAMPLED,                 /* how many fields a sample needs: those above */
     SF_LIGHT_KEEP = SF_LIGHT_SAMPLED, /* alias table: probability to keep the piece drawn */
-    SF_LIGHT_FIELDS = 32              /* two cache lines a piece, whichever of many is drawn */
+    /* What SF_STAGE_LIGHT_SHAPES needs beyond these. */
+    SF_LIGHT_KIND,
+    SF_LIGHT_AREA,     /* 1 for those that have none: then the density is the probability of the piece */
+    SF_LIGHT_HEIGHT,   /* of a sun's cone */
+    SF_LIGHT_MIDDLE_X, /* of a triangle or rectangle; */
+    SF_LIGHT_MIDDLE_Y,
+    SF_LIGHT_MIDDLE_Z,
+    SF_LIGHT_NEAR, /* the square of the distance from it within which it is sampled by solid angle */
+    SF_LIGHT_DRAWN,
+    SF_LIGHT_FIELDS = 32 /* two cache lines a piece, whichever of many is drawn */
 } sf_light_field;
 
 typedef struct sf_light_table {
@@ -58,13 +101,45 @@ typedef struct sf_light_table {
     size_t rectangle_count;
     float (*pieces)[SF_LIGHT_FIELDS];
     uint32_t *alias; /* alias table: the other piece of each column */
+    bool special;    /* some are sampled otherwise than by area of triangles and parallelograms */
+    /* With SF_STAGE_LIGHT_SHAPES, the piece of a hit: of_primitive[first_of_mesh[mesh] + primitive],
+     * for meshes that emit. */
+    uint32_t *of_primitive;
+    size_t *first_of_mesh;
 } sf_light_table;
+
+/* The light from where rays miss. */
+typedef struct sf_sky_sun {
+    float direction[3], height; /* of the cone; 0 for one that no ray sees */
+    float radiance[3];
+    float pdf; /* density by solid angle over all lights together */
+} sf_sky_sun;
+
+typedef struct sf_sky {
+    sf_sky_sun *suns;
+    size_t sun_count;
+    sf_environment environment;     /* pixels NULL: none */
+    float front[3], left[3], up[3]; /* its frame: longitude 0, 90 degrees, the top */
+    double *edges;                  /* cosines from the top, of its rows' edges: height + 1 */
+    sf_piecewise *table;            /* draws a pixel in proportion to what comes from it */
+    double total;                   /* R + G + B over all solid angles */
+    float pdf;                      /* the probability of the environment among the lights, over total */
+    float far;                      /* farther than any two points of the scene */
+} sf_sky;
+
+/* What a sphere or disk is, by geometry number: middle, radius, normal, kind. */
+typedef enum sf_round_kind { SF_NOT_ROUND, SF_ROUND_SPHERE, SF_ROUND_DISK } sf_round_kind;
+typedef struct sf_round {
+    float centre[3], radius, normal[3];
+    uint32_t kind; /* sf_round_kind */
+} sf_round;
 
 /* A mesh as the scene keeps it. */
 typedef struct sf_scene_mesh {
     sf_mesh mesh;       /* its arrays are the caller's, or the copies below */
     float *vertex_copy; /* NULL where Embree reads the caller's */
     uint32_t *index_copy;
+    sf_round round; /* where it is no mesh, but a sphere or disk: `mesh` has no arrays then */
 } sf_scene_mesh;
 
 struct sf_scene {
@@ -80,13 +155,71 @@ struct sf_scene {
     sf_scene_info info;
     sf_mesh_table mesh_table;
     sf_light_table lights;
+    sf_light_sampling light_sampling;
+    float solid_angle_ratio;
+    sf_sun *suns;
+    sf_environment environment;
+    sf_sky sky;
+    sf_round *rounds; /* by geometry number, and the row of a miss; NULL without spheres and disks */
     sf_plan plan;
 };
 
-/* Cuts the emissive meshes into pieces and builds the table to draw them from, each with a
- * probability in proportion to area x (R + G + B); fills the meshes' SF_MESH_LIGHT_PDF. */
+/* Cuts the emissive meshes into pieces and builds the table to draw them from, with suns and the
+ * environment, each with a probability in proportion to its power; fills the meshes'
+ * SF_MESH_LIGHT_PDF. After sf_sky_build. */
 sf_status sf_lights_build(sf_scene *scene, sf_error *error);
 void sf_lights_free(sf_light_table *lights);
+
+/* light_table.c: a piece among the lights, whose geometry is known, before the probabilities are. */
+typedef struct sf_light_source {
+    float radiance[3]; /* that its weight is made of */
+    double area;       /* or 1 */
+    double power;      /* area x (R + G + B), or what is like it */
+    bool sky;
+    uint32_t mesh; /* where it is not of the sky */
+} sf_light_source;
+/* Gives each piece its probability and weight. Where there are lights in the scene and in the sky,
+ * each kind has half of the samples. */
+sf_status sf_light_table_fill(sf_scene *scene, const sf_light_source *sources, sf_error *error);
+
+/* light_near.c: whether a surface that reflects lies so near to a light that it is sampled by solid
+ * angle: in front of one of the 16 largest of those that can be. */
+bool sf_lights_near(const sf_scene *scene);
+
+/* sky.c: the suns and the environment of a scene whose bounds are known. */
+sf_status sf_sky_build(sf_scene *scene, sf_error *error);
+void sf_sky_free(sf_sky *sky);
+
+static inline bool sf_emits(const sf_mesh *mesh) {
+    return mesh->emission[0] > 0 || mesh->emission[1] > 0 || mesh->emission[2] > 0;
+}
+static inline bool sf_reflects(const sf_mesh *mesh) {
+    return mesh->albedo[0] > 0 || mesh->albedo[1] > 0 || mesh->albedo[2] > 0 ||
+           mesh->material.kind == SF_MATERIAL_DIELECTRIC || mesh->material.kind == SF_MATERIAL_CONDUCTOR;
+}
+
+/* Whether it has surfaces that are not diffuse. */
+static inline bool sf_scene_scatters(const sf_scene *scene) {
+    for (size_t i = 0; i < scene->info.mesh_count; ++i)
+        if (scene->meshes[i].mesh.material.kind != SF_MATERIAL_DIFFUSE) return true;
+    return false;
+}
+
+/* scene.c, for the files that add to a scene. */
+sf_status sf_scene_refuse_committed(const sf_scene *scene, sf_error *error);
+sf_status sf_scene_check_color(const char *what, const float *color, float upper, sf_error *error);
+sf_status sf_scene_check_vector(const char *what, const float *v, sf_error *error);
+sf_status sf_scene_reserve_mesh(sf_scene *scene, sf_error *error);
+uint64_t sf_scene_hash(uint64_t hash, const void *bytes, size_t count);
+#define SF_LENGTH_LIMIT 1e12f   /* volumes, which Embree computes, stay finite */
+#define SF_RADIANCE_LIMIT 1e18f /* sums and products with weights stay finite */
+
+/* material.c: how a surface of the material scatters. */
+sf_scatter sf_scatter_of(const sf_material *material);
+/* Fills what the table's row has of the material. */
+void sf_material_tabulate(sf_mesh_table *table, size_t row, const sf_mesh *mesh);
+/* Takes what decides the picture into the hash: nothing of a diffuse material. */
+uint64_t sf_material_hash(uint64_t hash, const sf_material *material);
 
 /* The plan of a scene whose meshes, lights, camera and background are known. */
 void sf_plan_derive(const sf_scene *scene, sf_plan *plan);

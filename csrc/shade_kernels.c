@@ -101,10 +101,7 @@ static inline void place_vertex(sf_batch *b, uint32_t i) {
     nx *= turn;
     ny *= turn;
     nz *= turn;
-    float ax = fabsf(ox), ay = fabsf(oy), az = fabsf(oz);
-    float largest = ax > ay ? ax : ay;
-    largest = largest > az ? largest : az;
-    float lift = 0x1p-18f * (largest + t);
+    float lift = sf_lift(ox, oy, oz, t);
     b->point[0][i] = ox + t * dx + lift * nx;
     b->point[1][i] = oy + t * dy + lift * ny;
     b->point[2][i] = oz + t * dz + lift * nz;
@@ -114,7 +111,7 @@ static inline void place_vertex(sf_batch *b, uint32_t i) {
 }
 
 static void place_vertices(sf_batch *b, const sf_scene *scene, uint32_t n) {
-    look_up(&scene->mesh_table, SF_MESH_ALBEDO_R, 3, b->mesh, n, b->albedo);
+    look_up(&scene->mesh_table, SF_MESH_PASS_R, 3, b->mesh, n, b->albedo);
     for (uint32_t i = 0; i < n; ++i) place_vertex(b, i);
 }
 

@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "signed_filter.h"
 #include "sunfleck/elementary.h"
 
 #define LEVELS SF_DYADIC_LEVELS
@@ -230,10 +231,11 @@ static double unseen(const sf_film *film, const sf_render_options *o, double n) 
 }
 
 /* Over eight replicates of equal size; `factor` is Student's t with 7 degrees of freedom. */
-static float replicates_half_width(const sf_film_pixel *pixel, double factor) {
+static float replicates_half_width(const sf_film *film, const sf_film_pixel *pixel, double factor) {
     const double *sums = pixel->evidence.replicates;
     double mean = sf_film_level_of(&pixel->moments),
            blocks = (double)(sf_film_taken(pixel) / (SF_LANES * SF_REPLICATES));
+    if (film->signed_pixels) mean = film->signed_pixels[pixel - film->pixels].blocks / (blocks * SF_REPLICATES);
     double rest = mean * SF_REPLICATES, squares = 0;
     for (int r = 0; r < SF_REPLICATES - 1; ++r) {
         double off = sums[r] / blocks - mean;
@@ -259,7 +261,7 @@ float sf_stop_half_width(const sf_film *film, const sf_render_options *o, uint32
                          const sf_stop_factors *factors) {
     const sf_film_pixel *pixel = film->pixels + (size_t)y * film->width + x;
     if (o->stop == SF_STOP_REPLICATES && sf_stop_is_look(o, (uint32_t)sf_film_taken(pixel)))
-        return replicates_half_width(pixel, factors->rule);
+        return replicates_half_width(film, pixel, factors->rule);
     if (o->stop != SF_STOP_DYADIC || !pixel->look) return sf_film_half_width(pixel, factors->rule);
     unsigned levels = pixel->look < LEVELS ? pixel->look : LEVELS;
     double half_width = factors->by_levels[levels] * sqrt((double)pooled_variance(film, x, y));

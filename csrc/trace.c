@@ -26,6 +26,8 @@ static void take_hits(sf_batch *b, const sf_scene *scene, const struct RTCRayHit
         uint32_t mesh = rays->hit.geomID[l];
         b->mesh[first + l] = mesh < miss ? mesh : miss;
     }
+    if (sf_plan_has(&scene->plan, SF_STAGE_LIGHT_SHAPES))
+        memcpy(b->primitive + first, rays->hit.primID, sizeof rays->hit.primID);
 }
 
 void sf_trace_nearest(sf_batch *b, const sf_scene *scene, uint32_t packets, const uint32_t *active,
@@ -52,14 +54,15 @@ void sf_trace_nearest(sf_batch *b, const sf_scene *scene, uint32_t packets, cons
 }
 
 /* One packet of shadow rays, `lanes` of them. */
-static void trace_shadow_packet(sf_batch *b, const sf_scene *scene, const uint32_t *order, uint32_t lanes) {
+static void trace_shadow_packet(sf_batch *b, const sf_scene *scene, float (*from)[SF_PATHS], const uint32_t *order,
+                                uint32_t lanes) {
     SF_ALIGNED(struct RTCRay16) rays;
     SF_ALIGNED(int) valid[SF_LANES];
     for (uint32_t l = 0; l < SF_LANES; ++l) {
         uint32_t i = order[l < lanes ? l : 0];
-        rays.org_x[l] = b->point[0][i];
-        rays.org_y[l] = b->point[1][i];
-        rays.org_z[l] = b->point[2][i];
+        rays.org_x[l] = from[0][i];
+        rays.org_y[l] = from[1][i];
+        rays.org_z[l] = from[2][i];
         rays.dir_x[l] = b->to_light[0][i];
         rays.dir_y[l] = b->to_light[1][i];
         rays.dir_z[l] = b->to_light[2][i];
@@ -75,7 +78,7 @@ static void trace_shadow_packet(sf_batch *b, const sf_scene *scene, const uint32
     for (uint32_t l = 0; l < lanes; ++l) b->arrives[order[l]] = rays.tfar[l] > 0 ? 1.0f : 0.0f;
 }
 
-void sf_trace_shadow(sf_batch *b, const sf_scene *scene, uint32_t count) {
+void sf_trace_shadow(sf_batch *b, const sf_scene *scene, float (*from)[SF_PATHS], uint32_t count) {
     for (uint32_t first = 0; first < count; first += SF_LANES)
-        trace_shadow_packet(b, scene, b->order + first, count - first < SF_LANES ? count - first : SF_LANES);
+        trace_shadow_packet(b, scene, from, b->order + first, count - first < SF_LANES ? count - first : SF_LANES);
 }

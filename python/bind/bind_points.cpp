@@ -6,6 +6,7 @@
 #include <nanobind/stl/pair.h>
 #include <pthread.h>
 #include <atomic>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -40,7 +41,48 @@ sf_crew *shared_crew() {
     return now;
 }
 
-template <class T, sf_status (*Fill)(const sf_points_options *, size_t, T *, sf_error *)>
+// A set with its tables, and the options that it was made for.
+struct prepared {
+    sf_points_options options;
+    sf_point_set *set = nullptr;
+
+    ~prepared() { sf_point_set_destroy(set); }
+
+    bool serves(const sf_points_options &o) const {
+        return options.pattern == o.pattern && options.scramble == o.scramble && options.dims == o.dims &&
+               options.pad == o.pad && options.seed == o.seed && options.total == o.total &&
+               options.threads == o.threads && options.crew == o.crew;
+    }
+};
+
+// The set that the last call used is kept for the next, which often asks for the same: for a few
+// dimensions its tables cost as much as 2^16 values. A call takes it out while it works, so that
+// none waits for another; what has many dimensions, or a total to know ahead, is not kept.
+std::atomic<prepared *> last_prepared{nullptr};
+
+bool worth_keeping(const sf_points_options &options) {
+    return options.dims <= 256 && !sf_pattern_needs_total(options.pattern);
+}
+
+template <class T>
+using fill_function = sf_status (*)(const sf_point_set *, uint64_t, size_t, T *, sf_error *);
+
+template <class T, sf_status (*Fill)(const sf_points_options *, size_t, T *, sf_error *), fill_function<T> FillFrom>
+sf_status fill_with_kept(const sf_points_options &options, size_t count, T *out, sf_error *error) {
+    if (!worth_keeping(options)) return Fill(&options, count, out, error);
+    std::unique_ptr<prepared> ours{last_prepared.exchange(nullptr)};
+    if (!ours || !ours->serves(options)) {
+        ours = std::make_unique<prepared>();
+        ours->options = options;
+        sf_status status = sf_point_set_create(&options, &ours->set, error);
+        if (status != SF_STATUS_OK) return status;
+    }
+    sf_status status = FillFrom(ours->set, options.first, count, out, error);
+    delete last_prepared.exchange(ours.release());
+    return status;
+}
+
+template <class T, sf_status (*Fill)(const sf_points_options *, size_t, T *, sf_error *), fill_function<T> FillFrom>
 void fill(nb::ndarray<T, nb::ndim<2>, nb::c_contig, nb::device::cpu> out, const std::string &pattern,
           const std::string &scramble, uint32_t dims, uint32_t pad, uint64_t seed, uint64_t first, uint64_t total,
           uint32_t threads) {
@@ -55,7 +97,7 @@ void fill(nb::ndarray<T, nb::ndim<2>, nb::c_contig, nb::device::cpu> out, const 
     options.threads = threads;
     options.crew = threads == 1 ? nullptr : shared_crew();
     if (out.shape(1) != dims) throw nb::value_error("out must have a column for each dimension");
-    call([&](sf_error *error) { return Fill(&options, out.shape(0), out.data(), error); });
+    call([&](sf_error *error) { return fill_with_kept<T, Fill, FillFrom>(options, out.shape(0), out.data(), error); });
 }
 
 }  // namespace
@@ -65,12 +107,12 @@ void bind_points(nb::module_ &m) {
 
     m.def("scrambles", [] { return listed(sf_scramble_name, sf_scramble_description); });
 
-    m.def("fill_points", &fill<float, sf_points_fill_f32>, "out"_a.noconvert(), "pattern"_a, "scramble"_a, "dims"_a,
-          "pad"_a, "seed"_a, "first"_a, "total"_a, "threads"_a);
-    m.def("fill_points", &fill<double, sf_points_fill_f64>, "out"_a.noconvert(), "pattern"_a, "scramble"_a, "dims"_a,
-          "pad"_a, "seed"_a, "first"_a, "total"_a, "threads"_a);
-    m.def("fill_points", &fill<uint32_t, sf_points_fill_u32>, "out"_a.noconvert(), "pattern"_a, "scramble"_a, "dims"_a,
-          "pad"_a, "seed"_a, "first"_a, "total"_a, "threads"_a);
+    m.def("fill_points", &fill<float, sf_points_fill_f32, sf_point_set_fill_f32>, "out"_a.noconvert(), "pattern"_a,
+          "scramble"_a, "dims"_a, "pad"_a, "seed"_a, "first"_a, "total"_a, "threads"_a);
+    m.def("fill_points", &fill<double, sf_points_fill_f64, sf_point_set_fill_f64>, "out"_a.noconvert(), "pattern"_a,
+          "scramble"_a, "dims"_a, "pad"_a, "seed"_a, "first"_a, "total"_a, "threads"_a);
+    m.def("fill_points", &fill<uint32_t, sf_points_fill_u32, sf_point_set_fill_u32>, "out"_a.noconvert(), "pattern"_a,
+          "scramble"_a, "dims"_a, "pad"_a, "seed"_a, "first"_a, "total"_a, "threads"_a);
 
     m.def(
         "valid_counts",

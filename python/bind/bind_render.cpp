@@ -280,6 +280,13 @@ void bind_render(nb::module_ &m) {
         return names;
     });
 
+    m.def("pixel_filters", [] {
+        nb::typed<nb::list, nb::str> names;
+        for (int k = 0; const char *name = sf_pixel_filter_name(static_cast<sf_pixel_filter>(k)); ++k)
+            names.append(name);
+        return names;
+    });
+
     m.def("stop_reasons", [] {
         nb::typed<nb::list, nb::str> names;
         for (int k = 0; k < SF_STOP_REASON_COUNT; ++k)

@@ -3,13 +3,30 @@
 
 #include "bind_scene.h"
 
+#include <algorithm>
+
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+
 namespace {
 
 using vertex_array = rows_of_three<float>;
 using triangle_array = rows_of_three<uint32_t>;
 
+// Kind, ior, roughness.
+using material_values = std::tuple<std::string, double, double>;
+
+sf_material make_material(const material_values &values) {
+    const auto &[kind, ior, roughness] = values;
+    int k = 0;
+    while (sf_material_kind_name(static_cast<sf_material_kind>(k)) &&
+           kind != sf_material_kind_name(static_cast<sf_material_kind>(k)))
+        ++k;
+    return {static_cast<sf_material_kind>(k), static_cast<float>(ior), static_cast<float>(roughness)};
+}
+
 sf_mesh make_mesh(const vertex_array &vertices, const triangle_array &triangles, const vector3 &albedo,
-                  const vector3 &emission) {
+                  const vector3 &emission, const material_values &material) {
     sf_mesh mesh = sf_mesh_default();
     mesh.vertices = vertices.data();
     mesh.vertex_count = vertices.shape(0);
@@ -17,6 +34,7 @@ sf_mesh make_mesh(const vertex_array &vertices, const triangle_array &triangles,
     mesh.triangle_count = triangles.shape(0);
     to_floats(albedo, mesh.albedo);
     to_floats(emission, mesh.emission);
+    mesh.material = make_material(material);
     return mesh;
 }
 
@@ -32,6 +50,49 @@ sf_camera make_camera(const vector3 &position, const vector3 &target, const vect
     return camera;
 }
 
+sf_sphere make_sphere(const vector3 &centre, double radius, const vector3 &albedo, const vector3 &emission,
+                      const material_values &material) {
+    sf_sphere sphere = sf_sphere_default();
+    to_floats(centre, sphere.centre);
+    sphere.radius = static_cast<float>(radius);
+    to_floats(albedo, sphere.albedo);
+    to_floats(emission, sphere.emission);
+    sphere.material = make_material(material);
+    return sphere;
+}
+
+sf_disk make_disk(const vector3 &centre, const vector3 &normal, double radius, const vector3 &albedo,
+                  const vector3 &emission, const material_values &material) {
+    sf_disk disk = sf_disk_default();
+    to_floats(centre, disk.centre);
+    to_floats(normal, disk.normal);
+    disk.radius = static_cast<float>(radius);
+    to_floats(albedo, disk.albedo);
+    to_floats(emission, disk.emission);
+    disk.material = make_material(material);
+    return disk;
+}
+
+sf_sun make_sun(const vector3 &direction, double angular_radius, const vector3 &irradiance) {
+    sf_sun sun = sf_sun_default();
+    to_floats(direction, sun.direction);
+    sun.angular_radius = static_cast<float>(angular_radius);
+    to_floats(irradiance, sun.irradiance);
+    return sun;
+}
+
+using environment_image = nb::ndarray<const float, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>;
+
+sf_environment make_environment(const environment_image &image, const vector3 &up, double rotation) {
+    sf_environment environment = sf_environment_default();
+    environment.pixels = image.data();
+    environment.width = static_cast<uint32_t>(std::min<size_t>(image.shape(1), UINT32_MAX));
+    environment.height = static_cast<uint32_t>(std::min<size_t>(image.shape(0), UINT32_MAX));
+    to_floats(up, environment.up);
+    environment.rotation = static_cast<float>(rotation);
+    return environment;
+}
+
 nb::tuple to_tuple(const float *v) { return nb::make_tuple(v[0], v[1], v[2]); }
 
 nb::typed<nb::dict, nb::str, nb::any> info_of(const scene_handle &scene) {
@@ -39,6 +100,9 @@ nb::typed<nb::dict, nb::str, nb::any> info_of(const scene_handle &scene) {
     call([&](sf_error *error) { return sf_scene_get_info(scene.scene, &info, error); });
     nb::dict d;
     d["mesh_count"] = info.mesh_count;
+    d["sphere_count"] = info.sphere_count;
+    d["disk_count"] = info.disk_count;
+    d["sun_count"] = info.sun_count;
     d["triangle_count"] = info.triangle_count;
     d["light_count"] = info.light_count;
     d["rectangle_light_count"] = info.rectangle_light_count;
@@ -86,12 +150,54 @@ void bind_scene(nb::module_ &m) {
     // C checks a mesh or a camera when a scene takes it; a scene of its own is the way to ask early.
     m.def(
         "check_mesh",
-        [](vertex_array vertices, triangle_array triangles, const vector3 &albedo, const vector3 &emission) {
+        [](vertex_array vertices, triangle_array triangles, const vector3 &albedo, const vector3 &emission,
+           const material_values &material) {
             scene_handle scratch;
-            sf_mesh mesh = make_mesh(vertices, triangles, albedo, emission);
+            sf_mesh mesh = make_mesh(vertices, triangles, albedo, emission, material);
             call([&](sf_error *error) { return sf_scene_add_mesh(scratch.scene, &mesh, error); });
         },
-        "vertices"_a.noconvert(), "triangles"_a.noconvert(), "albedo"_a, "emission"_a);
+        "vertices"_a.noconvert(), "triangles"_a.noconvert(), "albedo"_a, "emission"_a, "material"_a);
+    m.def(
+        "check_material",
+        [](const material_values &values) {
+            sf_material material = make_material(values);
+            call([&](sf_error *error) { return sf_material_check(&material, error); });
+        },
+        "material"_a);
+    m.def(
+        "check_sphere",
+        [](const vector3 &centre, double radius, const vector3 &albedo, const vector3 &emission,
+           const material_values &material) {
+            scene_handle scratch;
+            sf_sphere sphere = make_sphere(centre, radius, albedo, emission, material);
+            call([&](sf_error *error) { return sf_scene_add_sphere(scratch.scene, &sphere, error); });
+        },
+        "centre"_a, "radius"_a, "albedo"_a, "emission"_a, "material"_a);
+    m.def(
+        "check_disk",
+        [](const vector3 &centre, const vector3 &normal, double radius, const vector3 &albedo, const vector3 &emission,
+           const material_values &material) {
+            scene_handle scratch;
+            sf_disk disk = make_disk(centre, normal, radius, albedo, emission, material);
+            call([&](sf_error *error) { return sf_scene_add_disk(scratch.scene, &disk, error); });
+        },
+        "centre"_a, "normal"_a, "radius"_a, "albedo"_a, "emission"_a, "material"_a);
+    m.def(
+        "check_sun",
+        [](const vector3 &direction, double angular_radius, const vector3 &irradiance) {
+            scene_handle scratch;
+            sf_sun sun = make_sun(direction, angular_radius, irradiance);
+            call([&](sf_error *error) { return sf_scene_add_sun(scratch.scene, &sun, error); });
+        },
+        "direction"_a, "angular_radius"_a, "irradiance"_a);
+    m.def(
+        "check_environment",
+        [](environment_image image, const vector3 &up, double rotation) {
+            scene_handle scratch;
+            sf_environment environment = make_environment(image, up, rotation);
+            call([&](sf_error *error) { return sf_scene_set_environment(scratch.scene, &environment, error); });
+        },
+        "image"_a.noconvert(), "up"_a, "rotation"_a);
     m.def(
         "check_camera",
         [](const vector3 &position, const vector3 &target, const vector3 &up, double vertical_fov,
@@ -107,13 +213,65 @@ void bind_scene(nb::module_ &m) {
         .def(
             "add_mesh",
             [](scene_handle &self, vertex_array vertices, triangle_array triangles, const vector3 &albedo,
-               const vector3 &emission) {
-                sf_mesh mesh = make_mesh(vertices, triangles, albedo, emission);
+               const vector3 &emission, const material_values &material) {
+                sf_mesh mesh = make_mesh(vertices, triangles, albedo, emission, material);
                 call([&](sf_error *error) { return sf_scene_add_mesh(self.scene, &mesh, error); });
             },
             // Embree reads both arrays for as long as the scene lives.
             nb::keep_alive<1, 2>(), nb::keep_alive<1, 3>(), "vertices"_a.noconvert(), "triangles"_a.noconvert(),
-            "albedo"_a, "emission"_a)
+            "albedo"_a, "emission"_a, "material"_a)
+        .def(
+            "add_sphere",
+            [](scene_handle &self, const vector3 &centre, double radius, const vector3 &albedo, const vector3 &emission,
+               const material_values &material) {
+                sf_sphere sphere = make_sphere(centre, radius, albedo, emission, material);
+                call([&](sf_error *error) { return sf_scene_add_sphere(self.scene, &sphere, error); });
+            },
+            "centre"_a, "radius"_a, "albedo"_a, "emission"_a, "material"_a)
+        .def(
+            "add_disk",
+            [](scene_handle &self, const vector3 &centre, const vector3 &normal, double radius, const vector3 &albedo,
+               const vector3 &emission, const material_values &material) {
+                sf_disk disk = make_disk(centre, normal, radius, albedo, emission, material);
+                call([&](sf_error *error) { return sf_scene_add_disk(self.scene, &disk, error); });
+            },
+            "centre"_a, "normal"_a, "radius"_a, "albedo"_a, "emission"_a, "material"_a)
+        .def(
+            "add_sun",
+            [](scene_handle &self, const vector3 &direction, double angular_radius, const vector3 &irradiance) {
+                sf_sun sun = make_sun(direction, angular_radius, irradiance);
+                call([&](sf_error *error) { return sf_scene_add_sun(self.scene, &sun, error); });
+            },
+            "direction"_a, "angular_radius"_a, "irradiance"_a)
+        .def(
+            "set_environment",
+            [](scene_handle &self, environment_image image, const vector3 &up, double rotation) {
+                sf_environment environment = make_environment(image, up, rotation);
+                call([&](sf_error *error) { return sf_scene_set_environment(self.scene, &environment, error); });
+            },
+            // The renderer reads the pixels for as long as the scene lives.
+            nb::keep_alive<1, 2>(), "image"_a.noconvert(), "up"_a, "rotation"_a)
+        .def(
+            "set_light_sampling",
+            [](scene_handle &self, const std::string &name) {
+                int k = 0;
+                const char *known;
+                while ((known = sf_light_sampling_name(static_cast<sf_light_sampling>(k))) && name != known) ++k;
+                if (!known)
+                    throw nb::value_error(("light_sampling is '" + name + "'; give both, light or surface").c_str());
+                call([&](sf_error *error) {
+                    return sf_scene_set_light_sampling(self.scene, static_cast<sf_light_sampling>(k), error);
+                });
+            },
+            "light_sampling"_a)
+        .def(
+            "set_solid_angle_ratio",
+            [](scene_handle &self, double ratio) {
+                call([&](sf_error *error) {
+                    return sf_scene_set_solid_angle_ratio(self.scene, static_cast<float>(ratio), error);
+                });
+            },
+            "ratio"_a)
         .def(
             "set_camera",
             [](scene_handle &self, const vector3 &position, const vector3 &target, const vector3 &up,

@@ -33,10 +33,13 @@ from sunfleck.estimate import (
 from sunfleck.integrate import Integral, IntegralLook, integrate
 from sunfleck.load import load
 from sunfleck.mapping import MAPPINGS
+from sunfleck.material import Conductor, Dielectric, Mirror
 from sunfleck.points import PATTERNS, SCRAMBLES, points, valid_counts
-from sunfleck.render import AOVS, STOP_REASONS, Image, Progress, Summary, merge, render
+from sunfleck.render import AOVS, PIXEL_FILTERS, STOP_REASONS, Image, Progress, Summary, merge, render
 from sunfleck.rng import RNGS, Rng
 from sunfleck.scene import Camera, Mesh, Plan, PlanDimensions, Scene, SceneInfo
+from sunfleck.shapes import Disk, Sphere
+from sunfleck.sky import Environment, Sun
 from sunfleck.tolerance import Tolerance
 
 if TYPE_CHECKING:
@@ -58,6 +61,7 @@ __all__ = [
     "AOVS",
     "MAPPINGS",
     "PATTERNS",
+    "PIXEL_FILTERS",
     "RNGS",
     "SCRAMBLES",
     "STOP_REASONS",
@@ -66,12 +70,17 @@ __all__ = [
     "Camera",
     "ChannelMoments",
     "CheckpointError",
+    "Conductor",
     "ConfidenceSequence",
+    "Dielectric",
+    "Disk",
+    "Environment",
     "Error",
     "Image",
     "Integral",
     "IntegralLook",
     "Mesh",
+    "Mirror",
     "Moments",
     "PiecewiseConstant1D",
     "PiecewiseConstant2D",
@@ -82,7 +91,9 @@ __all__ = [
     "RunningSums",
     "Scene",
     "SceneInfo",
+    "Sphere",
     "Summary",
+    "Sun",
     "Tolerance",
     "VectorMoments",
     "WeightedMoments",

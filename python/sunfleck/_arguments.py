@@ -21,6 +21,8 @@ Vector = tuple[float, float, float]
 
 def integer(name: str, value: Any, bits: int = 64) -> int:
     """A whole number in [0, 2^bits)."""
+    if type(value) is int and 0 <= value < 1 << bits:
+        return value
     try:
         number = operator.index(value)
     except TypeError:
@@ -65,6 +67,8 @@ def text(name: str, value: Any) -> str:
 
 def one_of(name: str, value: DTypeLike, allowed: Sequence[str]) -> np.dtype[Any]:
     """A dtype among those allowed."""
+    if isinstance(value, str) and value in allowed:
+        return np.dtype(value)
     try:
         dtype = np.dtype(value)
     except TypeError:
@@ -78,9 +82,14 @@ def shape_of(name: str, value: Any) -> tuple[int, ...]:
     """A shape: an integer or a sequence of integers, none negative."""
     sizes = value if isinstance(value, (tuple, list)) else (value,)
     shape = tuple(integer(name, size, bits=63) for size in sizes)
-    if math.prod(shape) >= 1 << 60:
-        raise MemoryError(f"{name} is {value!r}: no memory holds {math.prod(shape)} values")
+    check_size(name, shape)
     return shape
+
+
+def check_size(name: str, shape: tuple[int, ...]) -> None:
+    """Refuses what no machine's memory holds."""
+    if math.prod(shape) >= 1 << 60:
+        raise MemoryError(f"{name} is {shape}: no memory holds {math.prod(shape)} values")
 
 
 def real_array(name: str, value: ArrayLike, dtype: np.dtype[Any] | None) -> NDArray[Any]:

@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 import sunfleck as sf
 from sunfleck import _core
 from sunfleck._files import replacing, writable_target
-from sunfleck.image import IMAGE_TYPES
-from sunfleck.load import FILE_TYPES
+from sunfleck.image import IMAGE_TYPES, RADIANCE_TYPES, read_radiance
+from sunfleck.load import FILE_TYPES, z_is_up
 from sunfleck.scenes import SCENES
 
 __all__ = ["main"]
@@ -88,6 +88,14 @@ def _add_render(commands: argparse._SubParsersAction[_Parser]) -> None:
     add("-o", "--output", action="append", metavar="FILE", help=".exr or .png; default SCENE.exr; may be repeated")
     add("--width", type=int, default=512, metavar="N", help="of the full frame, in pixels; default 512")
     add("--height", type=int, default=512, metavar="N", help="default 512")
+    add("--environment", metavar="FILE", help=f"light from all around: {', '.join(RADIANCE_TYPES)}, latitude-longitude")
+    add(
+        "--rotation",
+        type=float,
+        default=0.0,
+        metavar="A",
+        help="turns it about the scene's up axis, degrees; default 0",
+    )
 
     accuracy = parser.add_argument_group("accuracy, samples and time (default: --tolerance 0.01)")
     add = accuracy.add_argument
@@ -101,7 +109,7 @@ def _add_render(commands: argparse._SubParsersAction[_Parser]) -> None:
     sampling = parser.add_argument_group("sampling")
     add = sampling.add_argument
     add("--pattern", default="sobol", metavar="NAME", help=f"{', '.join(sf.PATTERNS)}; default sobol")
-    add("--pixel-filter", default="box", metavar="NAME", help="box, tent, gaussian; default box")
+    add("--pixel-filter", default="box", metavar="NAME", help=f"{', '.join(sf.PIXEL_FILTERS)}; default box")
     add("--stop", default="dyadic", metavar="RULE", help="dyadic, replicates or standard-error; default dyadic")
     add("--unbiased", action="store_true", help="a pilot decides the counts, a second set is shown; costs twice")
     add("--seeds", default="pixel", metavar="POLICY", help="pixel, thread, shared; default pixel")
@@ -167,12 +175,18 @@ def _parser() -> _Parser:
     return parser
 
 
-def _scene(name: str) -> sf.Scene:
-    if name in SCENES:
-        return SCENES[name]()
-    if not Path(name).suffix:
+def _scene(name: str, environment: str | None = None, rotation: float = 0.0) -> sf.Scene:
+    if name not in SCENES and not Path(name).suffix:
         raise ValueError(f"there is no scene {name!r}; give one of {', '.join(SCENES)}, or a file")
-    return sf.load(name)
+    if environment is None:
+        return SCENES[name]() if name in SCENES else sf.load(name)
+    image = read_radiance(environment)
+    if name not in SCENES:
+        up = (0, 0, 1) if z_is_up(name) else (0, 1, 0)
+        return sf.load(name, environment=sf.Environment(image, up, rotation))
+    scene = SCENES[name]()
+    around = sf.Environment(image, scene.camera.up, rotation)  # the built-in cameras' up is their scene's
+    return sf.Scene(scene.shapes, scene.camera, scene.background, scene.max_bounces, environment=around)
 
 
 def _render(given: argparse.Namespace) -> int:
@@ -197,7 +211,7 @@ def _render(given: argparse.Namespace) -> int:
 
 def _rendered(given: argparse.Namespace) -> sf.Image:
     return sf.render(
-        _scene(given.scene),
+        _scene(given.scene, given.environment, given.rotation),
         given.width,
         given.height,
         spp=given.spp,

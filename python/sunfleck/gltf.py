@@ -4,8 +4,8 @@
 """gltf: meshes and camera of a glTF 2.0 file (.gltf, .glb).
 
 Read: node transforms, triangles of all three modes, sparse and quantized positions, base colour,
-emission, perspective cameras. Not read, and said so in the log: textures, points and lines,
-skins, morph targets, orthographic cameras, point lights. Reference: Khronos Group 2021, "glTF 2.0
+emission, perspective cameras, directional lights. Not read, and said so in the log: textures, points and lines,
+skins, morph targets, orthographic cameras, point and spot lights. Reference: Khronos Group 2021, "glTF 2.0
 Specification" (ISO/IEC 12113:2022).
 
 trimesh, which reads the other formats, is not used here: it gives sparse accessors as zeros,
@@ -20,7 +20,7 @@ import json
 import logging
 import struct
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote, urlparse
@@ -30,12 +30,13 @@ from numpy.typing import NDArray
 
 from sunfleck._arguments import Vector, number, vector
 from sunfleck.scene import Mesh
+from sunfleck.sky import Sun
 
-__all__ = ["View", "read_gltf"]
+__all__ = ["Contents", "View", "read_gltf"]
 
 _log = logging.getLogger("sunfleck")
 
-_SUPPORTED = {"KHR_materials_emissive_strength", "KHR_mesh_quantization"}
+_SUPPORTED = {"KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_mesh_quantization"}
 _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 _LINES_AND_POINTS, _TRIANGLES, _STRIP, _FAN = (0, 1, 2, 3), 4, 5, 6
@@ -52,8 +53,18 @@ class View:
     vertical_fov: float
 
 
-def read_gltf(path: Path) -> tuple[list[Mesh], View | None]:
-    """The file's triangles as meshes, one for each primitive, and its first perspective camera.
+@dataclass(frozen=True)
+class Contents:
+    """What a file holds of what scenes have."""
+
+    meshes: list[Mesh]
+    view: View | None = None
+    suns: list[Sun] = field(default_factory=list)
+
+
+def read_gltf(path: Path) -> Contents:
+    """The file's triangles as meshes, one for each primitive, its first perspective camera, its
+    directional lights as suns.
 
     Raises
     ------
@@ -208,7 +219,7 @@ class _File:
         triangles: NDArray[Any] = order[rows]
         return triangles
 
-    def _material(self, primitive: dict[str, Any]) -> dict[str, Vector]:
+    def _material(self, primitive: dict[str, Any]) -> dict[str, Any]:
         """Albedo and emission, where the file has them."""
         if "material" not in primitive:
             return {}
@@ -292,8 +303,22 @@ class _File:
             vertical_fov=float(np.degrees(number("yfov", camera["perspective"]["yfov"]))),
         )
 
-    def read(self) -> tuple[list[Mesh], View | None]:
+    def _sun(self, index: Any, transform: NDArray[np.float64]) -> Sun | None:
+        """A directional light; it shines along the node's -z, with lux for irradiance. None: another kind."""
+        lights = self._tree["extensions"]["KHR_lights_punctual"]["lights"]
+        if not isinstance(index, int) or not 0 <= index < len(lights):
+            raise ValueError(f"lights[{index!r}] is referred to, and does not exist")
+        light = lights[index]
+        if light["type"] != "directional":
+            return None
+        color = vector("light color", light.get("color", (1, 1, 1)))
+        level = vector("light", np.multiply(color, number("intensity", light.get("intensity", 1))))
+        return Sun(vector("light direction", transform[:3, 2]), 0, level) if any(level) else None
+
+    def read(self) -> Contents:
         meshes: list[Mesh] = []
+        suns: list[Sun] = []
+        left_out = 0
         view = None
         for node, transform in self._nodes():
             if "mesh" in node:
@@ -301,7 +326,11 @@ class _File:
             if "skin" in node:
                 self._note("skins are not applied: the mesh is shown as it was bound")
             if "KHR_lights_punctual" in node.get("extensions", {}):
-                self._note("point, spot and directional lights are left out")
+                sun = self._sun(node["extensions"]["KHR_lights_punctual"]["light"], transform)
+                suns += [sun] if sun else []
+                left_out += sun is None
             if "camera" in node and view is None:
                 view = self._camera(node["camera"], transform)
-        return meshes, view
+        if left_out:
+            self._note(f"{left_out} point and spot lights are left out")
+        return Contents(meshes, view, suns)

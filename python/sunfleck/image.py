@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Sunfleck developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""image: writes the channels of a film through OpenImageIO, and pictures of single channels."""
+"""image: channels of a film written, pictures of single channels, radiance read, through OpenImageIO."""
 
 from __future__ import annotations
 
@@ -11,11 +11,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sunfleck._files import FilePath, ending, replacing, writable_target
+from sunfleck._files import FilePath, ending, given_path, replacing, writable_target
 
-__all__ = ["IMAGE_TYPES", "encode_srgb", "false_color", "write_channels", "write_false_color"]
+__all__ = [
+    "IMAGE_TYPES",
+    "RADIANCE_TYPES",
+    "encode_srgb",
+    "false_color",
+    "read_radiance",
+    "write_channels",
+    "write_false_color",
+]
 
 IMAGE_TYPES = (".exr", ".png")
+RADIANCE_TYPES = (".exr", ".hdr", ".pfm")
 
 Channels = Sequence[tuple[str, NDArray[Any]]]
 
@@ -166,3 +175,46 @@ def write_false_color(path: FilePath, values: ArrayLike, low: float | None = Non
     """
     writable_target(path, "false colours", (".png",))
     _write(path, false_color(values, low, high), "RGB", {})
+
+
+def read_radiance(path: FilePath) -> NDArray[np.float32]:
+    """The first three channels of a file of linear values; a single one stands for all three.
+
+    Parameters
+    ----------
+    path : path-like
+        Ending in .exr, .hdr or .pfm.
+
+    Returns
+    -------
+    ndarray of float32, shape (h, w, 3)
+
+    Raises
+    ------
+    ValueError
+        Another ending, or two channels.
+    OSError
+        The file can't be read; with the reason.
+    """
+    given = given_path(path)
+    if ending(given) not in RADIANCE_TYPES:
+        raise ValueError(
+            f"{given!r} ends in {ending(given)!r}; radiance is read from {', '.join(RADIANCE_TYPES)}, which are linear"
+        )
+    with open(given, "rb"):  # the system's own words where that fails
+        pass
+    import OpenImageIO as oiio
+
+    source = oiio.ImageInput.open(given)
+    if not source:
+        raise OSError(f"can't read {given!r}: {' '.join(oiio.geterror().split())}")
+    pixels = source.read_image(oiio.FLOAT)
+    reason = source.geterror()
+    source.close()
+    if pixels is None or reason:
+        raise OSError(f"can't read {given!r}: {' '.join(reason.split())}")
+    if pixels.ndim == 2 or pixels.shape[2] == 1:
+        pixels = np.repeat(pixels.reshape(*pixels.shape[:2], 1), 3, axis=2)
+    if pixels.shape[2] < 3:
+        raise ValueError(f"{given!r} has {pixels.shape[2]} channels; radiance has 1 or 3")
+    return np.ascontiguousarray(pixels[..., :3], dtype=np.float32)

@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 
 from sunfleck._arguments import Vector, vector
 from sunfleck._files import FilePath, given_path
-from sunfleck.gltf import View, read_gltf
+from sunfleck.gltf import Contents, View, read_gltf
 from sunfleck.scene import Camera, Mesh, Scene
+from sunfleck.sky import Environment
 
-__all__ = ["FILE_TYPES", "load"]
+__all__ = ["FILE_TYPES", "load", "z_is_up"]
 
 _log = logging.getLogger("sunfleck")
 
@@ -45,7 +46,7 @@ def _decode(data: bytes) -> bytes:
     return data
 
 
-def _colors(material: Any) -> dict[str, Vector]:
+def _colors(material: Any) -> dict[str, Any]:
     """Kd and Ke of an OBJ material, where it has them."""
     values = getattr(material, "kwargs", {})
     colors = {}
@@ -57,7 +58,7 @@ def _colors(material: Any) -> dict[str, Vector]:
     return colors
 
 
-def _read_by_trimesh(path: Path) -> tuple[list[Mesh], View | None]:
+def _read_by_trimesh(path: Path) -> Contents:
     import trimesh
 
     kind = path.suffix[1:].lower()
@@ -75,11 +76,11 @@ def _read_by_trimesh(path: Path) -> tuple[list[Mesh], View | None]:
             continue
         colors = _colors(getattr(geometry.visual, "material", None))
         meshes.append(Mesh(geometry.vertices.view(np.ndarray), geometry.faces.view(np.ndarray), **colors))
-    return meshes, None
+    return Contents(meshes)
 
 
 # Ending: the reader, and whether z is up (else y).
-FILE_TYPES: dict[str, tuple[Callable[[Path], tuple[list[Mesh], View | None]], bool]] = {
+FILE_TYPES: dict[str, tuple[Callable[[Path], Contents], bool]] = {
     ".obj": (_read_by_trimesh, False),
     ".ply": (_read_by_trimesh, True),
     ".stl": (_read_by_trimesh, True),
@@ -88,7 +89,7 @@ FILE_TYPES: dict[str, tuple[Callable[[Path], tuple[list[Mesh], View | None]], bo
 }
 
 
-def _read(path: Path) -> tuple[list[Mesh], View | None]:
+def _read(path: Path) -> Contents:
     """The reader's answer, or its refusal under the file's name; readers trip in many ways."""
     reader, _ = FILE_TYPES[path.suffix.lower()]
     try:
@@ -144,13 +145,20 @@ def _bounds(meshes: list[Mesh]) -> tuple[NDArray[np.float64], float]:
     return (lower + upper) / 2, float(np.linalg.norm(upper - lower) / 2)
 
 
-def load(path: FilePath) -> Scene:
+def z_is_up(path: FilePath) -> bool:
+    """Whether z is up in files of that ending, else y; False for an ending that is not known."""
+    return FILE_TYPES.get(Path(path).suffix.lower(), (None, False))[1]
+
+
+def load(path: FilePath, *, environment: Environment | None = None) -> Scene:
     """A scene of the triangles in a file.
 
     Parameters
     ----------
     path : path-like
         Ending in .obj, .ply, .stl, .gltf or .glb.
+    environment : Environment, optional
+        Light from all around, which takes the place of the light that a file without one gets.
 
     Returns
     -------
@@ -177,10 +185,11 @@ def load(path: FilePath) -> Scene:
     and Ke, 0.5 grey where there is none. Textures are not read.
 
     A file without a perspective camera gets one of 40 degrees that sees the whole model from the
-    front, to the right and above. A file without emission gets a square light of radiance 10, as
-    wide as 1.5 radii of the model, 2.5 radii from its centre, to the left, above and in front.
-    Both are said through ``logging`` under "sunfleck", at level INFO, as is all that was left
-    out. y is up in OBJ and glTF, z in PLY and STL.
+    front, to the right and above. glTF's directional lights become suns of angle 0; point and spot
+    lights are left out, and their number is said. A file without emission and suns gets a square
+    light of radiance 10, as wide as 1.5 radii of the model, 2.5 radii from its centre, to the left,
+    above and in front. Both are said through ``logging`` under "sunfleck", at level INFO, as is all
+    that was left out. y is up in OBJ and glTF, z in PLY and STL.
 
     Examples
     --------
@@ -196,7 +205,8 @@ def load(path: FilePath) -> Scene:
         raise ValueError(f"{given!r} ends in {file.suffix!r}; files that can be loaded end in {', '.join(FILE_TYPES)}")
     if file.exists() and not file.is_file():
         raise OSError(f"{given!r} is not a file")
-    meshes, view = _read(file)
+    contents = _read(file)
+    meshes, view = contents.meshes, contents.view
     if not meshes:
         raise ValueError(f"{file}: it holds no triangles")
     centre, radius = _bounds(meshes)
@@ -211,11 +221,11 @@ def load(path: FilePath) -> Scene:
         )
     else:
         camera = _camera_of(view, centre, radius)
-    if not any(any(mesh.emission) for mesh in meshes):
+    if environment is None and not contents.suns and not any(any(mesh.emission) for mesh in meshes):
         light = _default_light(centre, radius, z_up)
         meshes.append(light)
         _log.info(
             "%s: no light in it; a square of side %.4g and radiance %g shines from (%.4g, %.4g, %.4g)",
             *(file, _LIGHT_SIDE * radius, _RADIANCE, *light.vertices.mean(axis=0)),
         )
-    return Scene(meshes, camera)
+    return Scene(meshes, camera, suns=contents.suns, environment=environment)

@@ -11,7 +11,7 @@ from typing import Any
 from numpy.typing import DTypeLike, NDArray
 
 from sunfleck import _core
-from sunfleck._arguments import integer, one_of, output_array, shape_of, text
+from sunfleck._arguments import check_size, integer, one_of, output_array, text
 
 __all__ = ["PATTERNS", "SCRAMBLES", "points", "valid_counts"]
 
@@ -123,18 +123,12 @@ def points(
         raise ValueError("total is 0; give at least 1, or None for start + n")
     if threads is not None and integer("threads", threads, bits=32) == 0:  # C's word for all processors
         raise ValueError("threads is 0; give at least 1, or None for one for each processor")
-    options: dict[str, Any] = {
-        "pattern": text("pattern", pattern),
-        "scramble": "none" if scramble is None else text("scramble", scramble),
-        "dims": d,
-        "pad": integer("pad", pad, bits=32),
-        "seed": integer("seed", seed),
-        "first": start,
-        "total": total or 0,
-        "threads": threads or 0,
-    }
-    array = output_array(out, shape_of("(n, d)", (n, d)), kind)
-    _core.fill_points(array, **options)
+    pattern, seed, pad = text("pattern", pattern), integer("seed", seed), integer("pad", pad, bits=32)
+    scramble = "none" if scramble is None else text("scramble", scramble)
+    shape = (n, d)
+    check_size("(n, d)", shape)
+    array = output_array(out, shape, kind)
+    _core.fill_points(array, pattern, scramble, d, pad, seed, start, total or 0, threads or 0)
     if pattern in ("sobol", "sz") and n and (n & (n - 1) or start % n):
         warnings.warn(
             f"{n} points from {start} on are not an aligned block of a power of two of {pattern}'s "

@@ -24,13 +24,16 @@ from sunfleck.image import write_channels, write_false_color
 from sunfleck.scene import Scene
 from sunfleck.tolerance import Tolerance
 
-__all__ = ["AOVS", "STOP_REASONS", "Image", "Progress", "Summary", "merge", "render"]
+__all__ = ["AOVS", "PIXEL_FILTERS", "STOP_REASONS", "Image", "Progress", "Summary", "merge", "render"]
 
 STOP_REASONS: tuple[str, ...] = tuple(_core.stop_reasons())
 """The names of the numbers in `Image.stop_reason`."""
 
 AOVS: tuple[str, ...] = tuple(_core.aov_names())
 """What an image can hold beside the colours; see `render`."""
+
+PIXEL_FILTERS: tuple[str, ...] = tuple(_core.pixel_filters())
+"""What a pixel can average over: the mappings pixel_NAME; see `render`."""
 
 
 @dataclass(frozen=True)
@@ -138,7 +141,8 @@ class Image:
     Attributes
     ----------
     color : ndarray of float32, shape (h, w, 3)
-        Mean radiance, linear RGB, at least 0. Row 0 is the top.
+        Mean radiance, linear RGB, at least 0; below it beside bright things under a filter with
+        negative lobes. Row 0 is the top.
     alpha : ndarray of float32, shape (h, w)
         Share of samples that hit a surface, in [0, 1].
     samples : ndarray of uint32, shape (h, w)
@@ -372,8 +376,13 @@ def render(
         A time limit. Alone it is a budget, spent likewise.
     pattern : str
         One of `sunfleck.PATTERNS`.
-    pixel_filter : "box", "tent" or "gaussian"
-        What a pixel averages over: itself, two pixels' width, or a Gaussian of sigma 0.4 pixel.
+    pixel_filter : str
+        What a pixel averages over, one of `sunfleck.PIXEL_FILTERS`: "box" (itself), "tent" (two
+        pixels' width), "gaussian" (sigma 0.4 pixel), "gaussian_truncated" (the same within 1.5
+        pixels), "blackman_harris" (three pixels' width), and two with negative lobes, "mitchell"
+        (four pixels' width, B = C = 1/3) and "lanczos" (six). A constant image stays exact under each,
+        at any number of samples. The last two need more samples for the same half-width, take
+        104 bytes more a pixel, and may leave pixels below 0.
     stop : "dyadic", "replicates" or "standard-error"
         The rule by which a pixel's half-width is told from its samples. "dyadic": from the
         differences between the halves of its sequence, the halves' halves, …, shared with its

@@ -8,13 +8,16 @@ from __future__ import annotations
 import logging
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sunfleck import _core
-from sunfleck._arguments import Vector, integer, number, vector
+from sunfleck._arguments import Vector, integer, number, text, vector
+from sunfleck.material import Material, default_albedo, material_values
+from sunfleck.shapes import Disk, Sphere
+from sunfleck.sky import Environment, Sun
 
 __all__ = ["Camera", "Mesh", "Plan", "PlanDimensions", "Scene", "SceneInfo"]
 
@@ -53,7 +56,7 @@ def _triangles(value: Any, vertex_count: int) -> NDArray[np.uint32]:
 
 
 class Mesh:
-    """Triangles with one diffuse reflectance and one emission.
+    """Triangles with one material, one reflectance and one emission.
 
     Parameters
     ----------
@@ -63,12 +66,15 @@ class Mesh:
     triangles : array_like, shape (m, 3)
         Vertex indices, each in [0, n). A C-contiguous uint32 array is used in place, other
         integer dtypes are copied once.
-    albedo : tuple of 3 floats
-        Diffuse reflectance, linear RGB, each in [0, 1]. Both sides reflect, with the flat
-        normal of the triangle.
+    albedo : tuple of 3 floats, optional
+        Reflectance, linear RGB, each in [0, 1]: of a diffuse surface, which it is without a
+        ``material`` (both sides reflect, with the flat normal of the triangle), or what the
+        material says. None: 0.5 grey, and 1 for a material.
     emission : tuple of 3 floats
         Radiance, linear RGB, each in [0, 1e18]. Only the side that (v1 - v0) x (v2 - v0)
         points to emits.
+    material : Mirror, Dielectric or Conductor, optional
+        How the surface scatters. None: diffuse.
 
     Raises
     ------
@@ -94,30 +100,37 @@ class Mesh:
     True
     """
 
-    __slots__ = ("albedo", "emission", "triangles", "vertices")
+    __slots__ = ("albedo", "emission", "material", "triangles", "vertices")
 
     vertices: NDArray[np.float32]
     triangles: NDArray[np.uint32]
     albedo: Vector
     emission: Vector
+    material: Material | None
 
     def __init__(
         self,
         vertices: ArrayLike,
         triangles: ArrayLike,
-        albedo: Sequence[float] = (0.5, 0.5, 0.5),
+        albedo: Sequence[float] | None = None,
         emission: Sequence[float] = (0.0, 0.0, 0.0),
+        material: Material | None = None,
     ) -> None:
         self.vertices = _vertices(vertices)
         self.triangles = _triangles(triangles, len(self.vertices))
-        self.albedo = vector("albedo", albedo)
+        self.material = material
+        self.albedo = default_albedo(material) if albedo is None else vector("albedo", albedo)
         self.emission = vector("emission", emission)
-        _core.check_mesh(self.vertices, self.triangles, self.albedo, self.emission)
+        _core.check_mesh(*self._values())
+
+    def _values(self) -> tuple[NDArray[np.float32], NDArray[np.uint32], Vector, Vector, tuple[str, float, float]]:
+        return self.vertices, self.triangles, self.albedo, self.emission, material_values(self.material)
 
     def __repr__(self) -> str:
         return (
             f"Mesh({len(self.vertices)} vertices, {len(self.triangles)} triangles, "
-            f"albedo={self.albedo}, emission={self.emission})"
+            f"albedo={self.albedo}, emission={self.emission}"
+            + (")" if self.material is None else f", material={self.material})")
         )
 
 
@@ -173,6 +186,20 @@ class Camera:
     def _values(self) -> tuple[Vector, Vector, Vector, float, float, float]:
         focus = 0.0 if self.focus_distance is None else self.focus_distance
         return self.position, self.target, self.up, self.vertical_fov, self.aperture_radius, focus
+
+
+_T = TypeVar("_T")
+
+
+def _list_of(name: str, values: Iterable[_T], kinds: tuple[type, ...]) -> tuple[_T, ...]:
+    wanted = " or ".join(f"sunfleck.{kind.__name__}" for kind in kinds)
+    if isinstance(values, kinds) or not isinstance(values, Iterable):
+        raise TypeError(f"{name} is {values!r}; give a list of {wanted}")
+    given = tuple(values)
+    for value in given:
+        if not isinstance(value, kinds):
+            raise TypeError(f"{name} holds {value!r}; every one must be a {wanted}")
+    return given
 
 
 @dataclass(frozen=True)
@@ -244,13 +271,17 @@ class Plan:
 class SceneInfo:
     """What a scene holds.
 
-    ``light_count`` pieces are sampled for light, of which ``rectangle_light_count`` are pairs of
-    triangles that form a parallelogram; ``degenerate_count`` triangles have no area;
+    ``light_count`` pieces are sampled for light (triangles, pairs of them, spheres, disks, suns, the
+    environment), of which ``rectangle_light_count`` are pairs of triangles that form a parallelogram;
+    ``degenerate_count`` triangles have no area;
     ``copied_bytes`` of the arrays could not be read in place; scenes of the same picture have
     the same ``hash``.
     """
 
     mesh_count: int
+    sphere_count: int
+    disk_count: int
+    sun_count: int
     triangle_count: int
     light_count: int
     rectangle_light_count: int
@@ -261,24 +292,38 @@ class SceneInfo:
     hash: int
 
 
+Shape = Mesh | Sphere | Disk
+
+
 class Scene:
-    """Meshes, a camera and a background, ready to render. Immutable.
+    """Shapes, a camera and what shines on them, ready to render. Immutable.
 
     Parameters
     ----------
-    meshes : iterable of Mesh
-        At least one. Any emissive mesh is an area light. Their arrays are read in place and
+    meshes : iterable of Mesh, Sphere or Disk
+        At least one. Any that emits is an area light. The arrays of meshes are read in place and
         kept alive by the scene.
     camera : Camera
     background : tuple of 3 floats
         Radiance of rays that hit nothing, linear RGB, each in [0, 1e18]. It counts as emission.
     max_bounces : int
         0 (emission seen directly), 1 (direct light), ... 64.
+    suns : iterable of Sun
+        At most 64.
+    environment : Environment, optional
+        Added to the background.
+    light_sampling : str
+        How light that can be sampled (all but the background) is found: "both", by light and by surface
+        sampling, weighted; "light" or "surface", by one of them alone. The mean is the same, but that
+        "surface" misses suns of angle 0.
+    solid_angle_ratio : float
+        Triangle and rectangle lights are sampled by solid angle from points nearer to their middle than
+        this many of their diagonals, and by area from all others. At least 0, which is never.
 
     Raises
     ------
     TypeError, ValueError
-        A value of the wrong kind or out of its range, which is named; no mesh.
+        A value of the wrong kind or out of its range, which is named; no shape.
     MemoryError
         No memory for Embree's hierarchy.
     sunfleck.Error
@@ -300,31 +345,51 @@ class Scene:
 
     def __init__(
         self,
-        meshes: Iterable[Mesh],
+        meshes: Iterable[Shape],
         camera: Camera,
         background: Sequence[float] = (0.0, 0.0, 0.0),
         max_bounces: int = 5,
+        *,
+        suns: Iterable[Sun] = (),
+        environment: Environment | None = None,
+        light_sampling: str = "both",
+        solid_angle_ratio: float = 1.0,
     ) -> None:
-        if isinstance(meshes, Mesh) or not isinstance(meshes, Iterable):
-            raise TypeError(f"meshes is {meshes!r}; give a list of sunfleck.Mesh")
-        self._meshes = tuple(meshes)
-        for mesh in self._meshes:
-            if not isinstance(mesh, Mesh):
-                raise TypeError(f"meshes holds {mesh!r}; every one must be a sunfleck.Mesh")
+        self._shapes = _list_of("meshes", meshes, (Mesh, Sphere, Disk))
+        self._suns = _list_of("suns", suns, (Sun,))
         if not isinstance(camera, Camera):
             raise TypeError(f"camera is {camera!r}; give a sunfleck.Camera")
+        if not isinstance(environment, (Environment, type(None))):
+            raise TypeError(f"environment is {environment!r}; give a sunfleck.Environment")
         self._camera = camera
+        self._environment = environment
         self._background = vector("background", background)
+        self._max_bounces = integer("max_bounces", max_bounces, bits=32)
+        self._light_sampling = text("light_sampling", light_sampling)
+        self._solid_angle_ratio = number("solid_angle_ratio", solid_angle_ratio)
         self._core = _core.Scene()
-        for mesh in self._meshes:
-            self._core.add_mesh(mesh.vertices, mesh.triangles, mesh.albedo, mesh.emission)
+        self._add_shapes()
         self._core.set_camera(*camera._values())
         self._core.set_background(self._background)
-        self._max_bounces = integer("max_bounces", max_bounces, bits=32)
         self._core.set_max_bounces(self._max_bounces)
+        self._core.set_light_sampling(self._light_sampling)
+        self._core.set_solid_angle_ratio(self._solid_angle_ratio)
         self._core.commit()
         self._info = SceneInfo(**self._core.info())
         self._report()
+
+    def _add_shapes(self) -> None:
+        for shape in self._shapes:
+            if isinstance(shape, Mesh):
+                self._core.add_mesh(*shape._values())
+            elif isinstance(shape, Sphere):
+                self._core.add_sphere(*shape._values())
+            else:
+                self._core.add_disk(*shape._values())
+        for sun in self._suns:
+            self._core.add_sun(*sun._values())
+        if self._environment is not None:
+            self._core.set_environment(*self._environment._values())
 
     def _report(self) -> None:
         info = self._info
@@ -335,7 +400,28 @@ class Scene:
 
     @property
     def meshes(self) -> tuple[Mesh, ...]:
-        return self._meshes
+        return tuple(shape for shape in self._shapes if isinstance(shape, Mesh))
+
+    @property
+    def shapes(self) -> tuple[Shape, ...]:
+        """All of them: meshes, spheres and disks."""
+        return self._shapes
+
+    @property
+    def suns(self) -> tuple[Sun, ...]:
+        return self._suns
+
+    @property
+    def environment(self) -> Environment | None:
+        return self._environment
+
+    @property
+    def light_sampling(self) -> str:
+        return self._light_sampling
+
+    @property
+    def solid_angle_ratio(self) -> float:
+        return self._solid_angle_ratio
 
     @property
     def camera(self) -> Camera:
@@ -371,7 +457,12 @@ class Scene:
         return Plan(dimensions=dimensions, **plan)
 
     def __repr__(self) -> str:
+        others = [
+            f"{count} {name}s, "
+            for count, name in ((self._info.sphere_count, "sphere"), (self._info.disk_count, "disk"))
+            if count
+        ]
         return (
-            f"Scene({len(self._meshes)} meshes, {self._info.triangle_count} triangles, "
+            f"Scene({self._info.mesh_count} meshes, {''.join(others)}{self._info.triangle_count} triangles, "
             f"{self._info.light_count} lights, max_bounces={self._max_bounces})"
         )

@@ -56,6 +56,28 @@ static void test_mesh_bad_values_are_refused(void **state) {
     sf_scene_destroy(scene);
 }
 
+static void test_material_bad_values_are_refused(void **state) {
+    (void)state;
+    sf_scene *scene = new_scene();
+    square s = make_square(1, 0, 1);
+    sf_mesh mesh = square_mesh(&s, 0.5f, 0);
+    const sf_material_kind rough[] = {SF_MATERIAL_DIELECTRIC, SF_MATERIAL_CONDUCTOR};
+    for (int i = 0; i < 2; ++i) {
+        mesh.material = (sf_material){.kind = rough[i], .ior = 1.5f, .roughness = 1.25f};
+        assert_refused(SF_STATUS_INVALID_VALUE, "roughness is 1.25", sf_scene_add_mesh(scene, &mesh, error));
+        mesh.material.roughness = NAN;
+        assert_refused(SF_STATUS_INVALID_VALUE, "roughness is nan", sf_scene_add_mesh(scene, &mesh, error));
+    }
+    mesh.material = (sf_material){.kind = SF_MATERIAL_DIELECTRIC};
+    assert_refused(SF_STATUS_INVALID_VALUE, "ior is 0; it must be in [0.1, 10]",
+                   sf_scene_add_mesh(scene, &mesh, error));
+    mesh.material.kind = (sf_material_kind)4;
+    assert_refused(SF_STATUS_INVALID_VALUE, "material kind is 4", sf_scene_add_mesh(scene, &mesh, error));
+    mesh.material = (sf_material){.kind = SF_MATERIAL_DIFFUSE, .ior = NAN, .roughness = 7}; /* not read */
+    assert_ok(sf_scene_add_mesh(scene, &mesh, error));
+    sf_scene_destroy(scene);
+}
+
 static void test_light_without_area_is_refused_and_one_with_some_is_taken(void **state) {
     (void)state;
     sf_scene *scene = new_scene();
@@ -234,7 +256,9 @@ static void test_plan_grows_with_lens_lights_background_and_bounces(void **state
     assert_int_equal(plan.shadow_rays, 3);
     assert_int_equal(plan.surface_rays, 3);
     for (int stage = 0; stage < SF_STAGE_COUNT; ++stage)
-        assert_int_equal(runs(&plan, (sf_stage)stage), stage != SF_STAGE_CAMERA);
+        assert_int_equal(runs(&plan, (sf_stage)stage), stage != SF_STAGE_CAMERA && stage != SF_STAGE_ROUND &&
+                                                           stage != SF_STAGE_SKY && stage != SF_STAGE_LIGHT_SHAPES &&
+                                                           stage != SF_STAGE_SCATTER);
     sf_scene_destroy(scene);
 }
 
@@ -253,12 +277,15 @@ static void test_plan_of_a_scene_without_light_traces_camera_rays_only(void **st
 
 static void test_hash_sees_every_value_that_decides_the_picture(void **state) {
     (void)state;
-    uint64_t hashes[6];
-    for (int change = 0; change < 6; ++change) {
+    uint64_t hashes[10];
+    for (int change = 0; change < 10; ++change) {
         sf_scene *scene = new_scene();
         square s = make_square(1, 0, 1);
         if (change == 1) s.vertices[11] = 0x1p-140f;
         sf_mesh mesh = square_mesh(&s, change == 2 ? 0.25f : 0.5f, 1);
+        if (change >= 6) mesh.material.kind = change < 9 ? SF_MATERIAL_DIELECTRIC : SF_MATERIAL_MIRROR;
+        if (change == 7) mesh.material.ior = 1.25f;
+        if (change == 8) mesh.material.roughness = 0.5f;
         sf_camera camera = sf_camera_default();
         if (change == 3) camera.vertical_fov = 41;
         const float background[3] = {0, change == 4 ? 1.0f : 0.0f, 0};
@@ -301,6 +328,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_mesh_with_a_nan_vertex_is_refused_with_its_number),
         cmocka_unit_test(test_mesh_bad_values_are_refused),
+        cmocka_unit_test(test_material_bad_values_are_refused),
         cmocka_unit_test(test_light_without_area_is_refused_and_one_with_some_is_taken),
         cmocka_unit_test(test_camera_bad_values_are_refused),
         cmocka_unit_test(test_scene_in_the_wrong_state_is_refused),

@@ -75,6 +75,27 @@ def test_render_of_a_file_says_what_it_was_given(tmp_path: Path) -> None:
     assert (tmp_path / "t.exr").is_file()
 
 
+def test_render_under_an_environment(tmp_path: Path) -> None:
+    import OpenImageIO as oiio
+
+    sky = np.zeros((4, 8, 3), np.float32)
+    sky[0] = 3  # from above alone
+    output = oiio.ImageOutput.create(str(tmp_path / "sky.hdr"))
+    assert output
+    assert output.open(str(tmp_path / "sky.hdr"), oiio.ImageSpec(8, 4, 3, oiio.FLOAT))
+    assert output.write_image(sky)
+    output.close()
+    (tmp_path / "t.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    options = ("--width", "16", "--height", "16", "--spp", "32", "--environment", "sky.hdr", "--rotation", "45")
+    for scene in ("penumbra", "t.obj"):
+        result = run("render", scene, *options, "-o", "out.exr", cwd=tmp_path)
+        assert result.returncode == 0, result.stderr
+        assert "no light" not in result.stderr
+        assert pixels_of(tmp_path / "out.exr")[..., :3].max() > 0
+    assert_refused(run("render", "--environment", "sky.png", cwd=tmp_path), "sky.png", ".exr, .hdr, .pfm")
+    assert_refused(run("render", "--environment", "none.exr", cwd=tmp_path), "none.exr")
+
+
 def test_errors_are_one_line_and_exit_2(tmp_path: Path) -> None:
     assert_refused(run("render", "nowhere"), "nowhere", "penumbra, defocus, cornell")
     assert_refused(run("render", tmp_path / "nowhere.obj"), "nowhere.obj")

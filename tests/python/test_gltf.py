@@ -217,6 +217,25 @@ def test_base_colour_and_emission(document: Document, tmp_path: Path) -> None:
     assert len(scene.meshes) == 1  # it has a light of its own
 
 
+def test_directional_lights_are_suns_and_others_are_counted(
+    document: Document, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    lights = [{"type": "point"}, {"type": "directional", "color": [1, 0.5, 0], "intensity": 4}, {"type": "spot"}]
+    document.tree["extensions"] = {"KHR_lights_punctual": {"lights": lights}}
+    document.tree["extensionsRequired"] = ["KHR_lights_punctual"]
+    turned = [0, 2**-0.5, 0, 2**-0.5]  # by 90 degrees about y: -z becomes -x
+    for index in range(3):
+        document.tree["nodes"].append({"rotation": turned, "extensions": {"KHR_lights_punctual": {"light": index}}})
+    document.tree["scenes"][0]["nodes"] = [0, 1, 2, 3]
+    with caplog.at_level("INFO", "sunfleck"):
+        scene = document.load(tmp_path)
+    [sun] = scene.suns
+    assert sun.direction == pytest.approx((1, 0, 0), abs=1e-7)  # where the light comes from
+    assert (sun.angular_radius, sun.irradiance) == (0, (4, 2, 0))
+    assert len(scene.meshes) == 1  # the sun is light enough
+    assert "2 point and spot lights are left out" in caplog.text
+
+
 def test_no_material_is_mid_grey(document: Document, tmp_path: Path) -> None:
     assert document.load(tmp_path).meshes[0].albedo == (0.5, 0.5, 0.5)
 

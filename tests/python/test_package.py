@@ -33,7 +33,16 @@ def test_there_are_examples() -> None:
 def test_every_public_name_exists_and_is_documented() -> None:
     for name in sf.__all__:
         assert hasattr(sf, name), name
-        if name not in ("AOVS", "MAPPINGS", "PATTERNS", "RNGS", "SCRAMBLES", "STOP_REASONS", "Progress"):
+        if name not in (
+            "AOVS",
+            "MAPPINGS",
+            "PATTERNS",
+            "PIXEL_FILTERS",
+            "RNGS",
+            "SCRAMBLES",
+            "STOP_REASONS",
+            "Progress",
+        ):
             assert getattr(sf, name).__doc__, name
     assert sf.__version__.count(".") == 2
     assert issubclass(sf.Error, RuntimeError)

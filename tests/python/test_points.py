@@ -4,6 +4,7 @@
 """points: SciPy's sequences, strata, splitting, threads, out=, bad input."""
 
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -215,3 +216,26 @@ def test_totals_that_a_pattern_cannot_have() -> None:
         sf.points("jittered", 4, total=997)
     with pytest.raises(ValueError, match="latin has up to 4294967296"):
         sf.points("latin", 4, total=2**32 + 1)
+
+
+def test_a_kept_set_serves_only_its_like() -> None:
+    """The tables of the last call are kept; whatever was asked for before, the points are the same."""
+    asked: list[dict[str, Any]] = [
+        {"pattern": pattern, "n": 64, "d": d, "seed": seed, "scramble": scramble, "dtype": dtype, "threads": threads}
+        for pattern, scramble in (("sobol", "owen"), ("sobol", "lms"), ("sz", "owen"), ("halton", "default"))
+        for d, seed in ((3, 1), (3, 2), (4, 1))
+        for dtype, threads in (("float32", 1), ("float64", 2))
+    ]
+    alone = [sf.points(**options) for options in asked]
+    order = np.random.default_rng(7).integers(len(asked), size=400)
+    assert all(np.array_equal(sf.points(**asked[i]), alone[i]) for i in order)
+    assert len({array.tobytes() for array in alone}) == len(asked)  # no two of them are alike
+    with ThreadPoolExecutor(4) as pool:
+        assert all(pool.map(lambda i: np.array_equal(sf.points(**asked[i]), alone[i]), order))
+
+
+def test_a_kept_set_refuses_as_a_new_one_does() -> None:
+    sf.points("sobol", 16, 2, total=16)
+    with pytest.raises(ValueError, match="total of 16"):
+        sf.points("sobol", 16, 2, start=16, total=16)
+    assert len(sf.points("sobol", 16, 2, total=16)) == 16

@@ -4,7 +4,7 @@
 """scene: arrays in place, what a scene holds, the plan, bad input."""
 
 import gc
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -25,6 +25,38 @@ def lamp(z: float = 2) -> sf.Mesh:
     return sf.Mesh(
         VERTICES + np.array([0, 0, z], dtype=np.float32), TRIANGLES[:, ::-1], albedo=(0, 0, 0), emission=(1, 1, 1)
     )
+
+
+# ---- materials ----
+
+
+def test_a_material_s_albedo_is_white_unless_given() -> None:
+    assert quad().albedo == (0.5, 0.5, 0.5)
+    assert quad().material is None
+    assert quad(material=sf.Dielectric()).albedo == (1.0, 1.0, 1.0)
+    assert quad(material=sf.Conductor(), albedo=(0.9, 0.6, 0.3)).albedo == (0.9, 0.6, 0.3)
+
+
+@pytest.mark.parametrize(
+    ("make", "kind", "message"),
+    [
+        (lambda: sf.Dielectric(ior=0), ValueError, r"ior is 0; it must be in \[0.1, 10\]"),
+        (lambda: sf.Dielectric(ior=float("nan")), ValueError, "ior is nan"),
+        (lambda: sf.Dielectric(roughness=-0.5), ValueError, "roughness is -0.5"),
+        (lambda: sf.Conductor(cast("Any", "rough")), TypeError, "roughness is 'rough'"),
+        (lambda: quad(material="mirror"), TypeError, "material is 'mirror'; give a Mirror"),
+        (lambda: quad(material=sf.Mirror), TypeError, "give a Mirror"),
+    ],
+)
+def test_bad_materials_are_refused(make: Any, kind: type[Exception], message: str) -> None:
+    with pytest.raises(kind, match=message):
+        make()
+
+
+def test_scenes_of_different_materials_have_different_hashes() -> None:
+    materials = [None, sf.Mirror(), sf.Dielectric(), sf.Dielectric(1.33), sf.Dielectric(roughness=0.1), sf.Conductor()]
+    meshes = [quad(albedo=(1, 1, 1), material=material) for material in materials]
+    assert len({sf.Scene([mesh], CAMERA).info.hash for mesh in meshes}) == len(materials)
 
 
 # ---- meshes ----

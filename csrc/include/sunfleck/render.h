@@ -20,12 +20,20 @@ extern "C" {
 #define SF_MAX_THREADS 1024u
 #define SF_CELL_SIZE 8u /* pixels a side of the cells that rays are packed in */
 
-/* The density over the image plane that a pixel's samples are drawn from (filter importance
- * sampling: every sample has weight 1, so a constant image stays constant). */
+/* What a pixel averages over: the pixel filters of mapping_pixel.h, whose densities its samples are
+ * drawn from (filter importance sampling). Every sample has weight 1 and a constant image stays
+ * constant, exactly, for any number of samples. So it does under the last two, which have negative
+ * lobes: their samples are drawn by |f| and averaged for either sign by itself; the pixel is
+ * (1 + b) m+ - b m-, where b is the integral of the negative part. Pixels may then be negative, and
+ * a film takes 104 bytes more for each. */
 typedef enum sf_pixel_filter {
-    SF_PIXEL_FILTER_BOX = 0, /* the pixel itself */
-    SF_PIXEL_FILTER_TENT,    /* two pixels wide: reaches half a pixel past the border */
-    SF_PIXEL_FILTER_GAUSSIAN /* sigma 0.4 pixel, unbounded: 1 sample in 5 lies outside the pixel */
+    SF_PIXEL_FILTER_BOX = 0,            /* the pixel itself */
+    SF_PIXEL_FILTER_TENT,               /* two pixels wide: reaches half a pixel past the border */
+    SF_PIXEL_FILTER_GAUSSIAN,           /* sigma 0.4 pixel, unbounded: 38 % of the samples lie outside the pixel */
+    SF_PIXEL_FILTER_GAUSSIAN_TRUNCATED, /* the same within 1.5 pixels of the centre, renormalized */
+    SF_PIXEL_FILTER_BLACKMAN_HARRIS,    /* the 4-term window, three pixels wide */
+    SF_PIXEL_FILTER_MITCHELL,           /* Mitchell-Netravali, B = C = 1/3, four pixels wide; b = 0.0724 */
+    SF_PIXEL_FILTER_LANCZOS             /* three lobes, six pixels wide; b = 0.4223 */
 } sf_pixel_filter;
 
 /* When a pixel is done. */
@@ -92,7 +100,8 @@ typedef enum sf_aov {
                           below 2 samples */
     SF_AOV_HALF_A,     /* half_a.R .G .B: mean radiance of samples 0-15, 32-47, 64-79, … */
     SF_AOV_HALF_B,     /* half_b.R .G .B: of the others; 0 where there were none yet. The two halves
-                          have the mean as their mean, weighted by their counts */
+                          have the mean as their mean, weighted by their counts (under a filter with
+                          negative lobes but for a part of the half-width) */
     SF_AOV_COUNT
 } sf_aov;
 const char *sf_aov_name(sf_aov aov); /* "albedo", …; NULL beyond the last */

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-/* scene: triangle meshes over the caller's arrays, a camera, a background, and the plan of what
- * rendering them needs.
+/* scene: triangle meshes over the caller's arrays, spheres and disks, lights, a camera, a
+ * background, and the plan of what rendering them needs.
  *
  * A scene is built by one thread (create, add meshes, set camera and background, commit) and is
  * immutable once committed: any number of threads may then render it. Lengths are in scene
@@ -12,6 +12,7 @@
 #define SUNFLECK_SCENE_H
 
 #include "sunfleck/base.h"
+#include "sunfleck/material.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -19,7 +20,7 @@ extern "C" {
 
 typedef struct sf_scene sf_scene;
 
-/* A triangle mesh with one diffuse reflectance and one emission.
+/* A triangle mesh with one material, one reflectance and one emission.
  *
  * The arrays stay the caller's: they must neither change nor go before the scene is destroyed.
  * Embree reads them in place. It may read 4 bytes past the last vertex; where those could lie
@@ -30,13 +31,71 @@ typedef struct sf_mesh {
     size_t vertex_count;       /* 3 .. 2^32 - 1 */
     const uint32_t *triangles; /* triangle_count * 3, each < vertex_count */
     size_t triangle_count;     /* 1 .. 2^32 - 1 */
-    float albedo[3];           /* diffuse reflectance, each in [0, 1]; default 0.5; both sides reflect */
+    float albedo[3];           /* reflectance, each in [0, 1]; default 0.5; what it means, the material says */
     float emission[3];         /* radiance, each in [0, 1e18]; default 0; only the side that
                                   (v1 - v0) x (v2 - v0) points to emits */
+    sf_material material;      /* default diffuse, which reflects on both sides */
 } sf_mesh;
 
-/* A mesh without arrays, albedo 0.5, no emission. */
+/* A mesh without arrays, diffuse, albedo 0.5, no emission. */
 sf_mesh sf_mesh_default(void);
+
+/* A sphere, exactly. It reflects on both sides and emits outwards: from inside it shows no light. */
+typedef struct sf_sphere {
+    float centre[3]; /* finite, |coordinate| <= 1e12 */
+    float radius;    /* 1e-15 .. 1e12; default 1 */
+    float albedo[3]; /* as a mesh's */
+    float emission[3];
+    sf_material material;
+} sf_sphere;
+
+/* A flat disk, exactly. It reflects on both sides and emits on the side of its normal. */
+typedef struct sf_disk {
+    float centre[3];
+    float normal[3]; /* of any length but 0; default (0, 0, 1) */
+    float radius;    /* 1e-15 .. 1e12; default 1 */
+    float albedo[3];
+    float emission[3];
+    sf_material material;
+} sf_disk;
+
+/* Of radius 1 about the origin, diffuse, albedo 0.5, no emission. */
+sf_sphere sf_sphere_default(void);
+sf_disk sf_disk_default(void);
+
+/* A light at infinity: the same radiance from all directions within an angle of one. */
+typedef struct sf_sun {
+    float direction[3];   /* from the scene to the sun's middle, of any length but 0; default (0, 1, 0) */
+    float angular_radius; /* degrees: 0, or 0.01 .. 89; default 0.265, our sun's. With 0 it has one direction:
+                             only light sampling finds it, and no ray sees it */
+    float irradiance[3];  /* of a surface that faces it, each in [0, 1e18]: pi sin^2(angular_radius) times
+                             its radiance; default 1 */
+} sf_sun;
+sf_sun sf_sun_default(void);
+
+/* Radiance from all around, by direction, in addition to the background: a picture in latitude and
+ * longitude as OpenEXR lays it out. Row 0 is at the top, where `up` points; column 0 at longitude
+ * +180 degrees, falling to -180 degrees in the last. Longitude 0, the picture's middle, is +z, and
+ * +90 degrees is up x longitude 0 (+x for the default up). Where up is not at a right angle to +z,
+ * longitude 0 is the direction nearest to +z that is; where up is +z or -z, it is +x. Every pixel is
+ * a patch of constant radiance.
+ *
+ * The array stays the caller's: it must neither change nor go before the scene is destroyed. */
+typedef struct sf_environment {
+    const float *pixels;    /* height * width * 3, each in [0, 1e18], one at least above 0 */
+    uint32_t width, height; /* 1 .. 2^16 each */
+    float up[3];            /* of any length but 0; default (0, 1, 0) */
+    float rotation;         /* degrees, finite: turns it about up, counter-clockwise seen from above; default 0 */
+} sf_environment;
+sf_environment sf_environment_default(void);
+
+/* How light that can be sampled is found. All three have the same mean; for tests and study. */
+typedef enum sf_light_sampling {
+    SF_LIGHT_SAMPLING_BOTH = 0, /* by light and by surface sampling, weighted; the default */
+    SF_LIGHT_SAMPLING_LIGHT,    /* by light sampling alone */
+    SF_LIGHT_SAMPLING_SURFACE   /* by surface sampling alone, which a sun of angle 0 escapes */
+} sf_light_sampling;
+const char *sf_light_sampling_name(sf_light_sampling sampling); /* "both", …; NULL beyond the last */
 
 /* A pinhole camera, or a thin lens where aperture_radius > 0. Row 0 of the image is the top,
  * image right is forward x up. */
@@ -65,6 +124,23 @@ void sf_scene_destroy(sf_scene *scene);
  * left out of the lights; an emissive mesh of nothing else is refused. */
 sf_status sf_scene_add_mesh(sf_scene *scene, const sf_mesh *mesh, sf_error *error);
 
+/* As a mesh, whose number in messages they share. */
+sf_status sf_scene_add_sphere(sf_scene *scene, const sf_sphere *sphere, sf_error *error);
+sf_status sf_scene_add_disk(sf_scene *scene, const sf_disk *disk, sf_error *error);
+
+/* Adds a sun; there may be 64. */
+sf_status sf_scene_add_sun(sf_scene *scene, const sf_sun *sun, sf_error *error);
+
+/* NULL takes it away. One pass over the pixels. */
+sf_status sf_scene_set_environment(sf_scene *scene, const sf_environment *environment, sf_error *error);
+
+sf_status sf_scene_set_light_sampling(sf_scene *scene, sf_light_sampling sampling, sf_error *error);
+
+/* Triangle and rectangle lights are sampled by solid angle from points nearer to their middle than
+ * `ratio` of their diagonals, and by area from all others. 0 .. infinity; default 1; 0 is always by
+ * area. A scene none of whose 16 largest lights has a surface so near has no such stage. */
+sf_status sf_scene_set_solid_angle_ratio(sf_scene *scene, float ratio, sf_error *error);
+
 sf_status sf_scene_set_camera(sf_scene *scene, const sf_camera *camera, sf_error *error);
 
 /* radiance: each in [0, 1e18]. */
@@ -80,8 +156,12 @@ sf_status sf_scene_commit(sf_scene *scene, sf_error *error);
 /* What a committed scene holds. */
 typedef struct sf_scene_info {
     size_t mesh_count;
+    size_t sphere_count;
+    size_t disk_count;
+    size_t sun_count;
     size_t triangle_count;
-    size_t light_count;           /* pieces that light is sampled from: triangles and rectangles */
+    size_t light_count;           /* pieces that light is sampled from: triangles, rectangles, spheres, disks,
+                                     suns, the environment */
     size_t rectangle_light_count; /* of these, pairs of triangles sampled as one parallelogram */
     size_t degenerate_count;      /* zero-area triangles */
     size_t copied_bytes;          /* of arrays that could not be read in place */
@@ -99,7 +179,8 @@ typedef enum sf_dimension_use {
     SF_DIMENSION_LENS,      /* 2: position on the lens */
     SF_DIMENSION_LIGHT,     /* 2: point on the light, for the vertex `bounce` */
     SF_DIMENSION_CHOICE,    /* 1: which light, for the vertex `bounce` */
-    SF_DIMENSION_SURFACE    /* 2: direction off the surface, at the vertex `bounce` */
+    SF_DIMENSION_SURFACE,   /* 2: direction off the surface, at the vertex `bounce` */
+    SF_DIMENSION_LOBE       /* 1: reflection or refraction, at the vertex `bounce` */
 } sf_dimension_use;
 
 typedef struct sf_plan_dimensions {
@@ -114,10 +195,16 @@ typedef enum sf_stage {
     SF_STAGE_CAMERA = 0,   /* camera rays: pinhole */
     SF_STAGE_LENS,         /* camera rays: thin lens, instead of the pinhole's */
     SF_STAGE_INTERSECT,    /* nearest hits of camera rays */
+    SF_STAGE_ROUND,        /* points and normals of spheres and disks */
     SF_STAGE_MISS,         /* background radiance for rays that hit nothing */
+    SF_STAGE_SKY,          /* radiance of suns and the environment for rays that hit nothing */
     SF_STAGE_EMISSION,     /* radiance of emissive surfaces that rays hit */
     SF_STAGE_CHOOSE_LIGHT, /* one light of several */
     SF_STAGE_LIGHT,        /* shadow rays to points on lights */
+    SF_STAGE_LIGHT_SHAPES, /* light sampled otherwise than by area of triangles and parallelograms: by solid
+                              angle, from spheres, disks, suns, the environment */
+    SF_STAGE_SCATTER,      /* mirrors, dielectrics, conductors: from them surface-sampled rays start at the
+                              last bounce too */
     SF_STAGE_SURFACE,      /* surface-sampled rays between vertices */
     SF_STAGE_LAST_SURFACE, /* surface-sampled rays at the last bounce, for the background or
                               where there is no light to sample */
@@ -129,7 +216,7 @@ typedef enum sf_stage {
 const char *sf_stage_name(sf_stage stage);
 const char *sf_dimension_use_name(sf_dimension_use use);
 
-#define SF_PLAN_MAX_GROUPS (2 + 3 * SF_MAX_BOUNCES)
+#define SF_PLAN_MAX_GROUPS (2 + 4 * SF_MAX_BOUNCES)
 
 /* What a scene turned out to need, and what the renderer runs: nothing else. */
 typedef struct sf_plan {

@@ -11,6 +11,7 @@
 #include "sunfleck/image.h"
 #include "sunfleck/integrate.h"
 #include "sunfleck/mapping.h"
+#include "sunfleck/material.h"
 #include "sunfleck/points.h"
 #include "sunfleck/render.h"
 #include "sunfleck/rng.h"

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* What the kernels that sample light share: choosing a piece, and the bin of a shadow ray. */
+#ifndef SUNFLECK_LIGHT_LANES_H
+#define SUNFLECK_LIGHT_LANES_H
+
+#include "batch.h"
+
+/* Draws a piece from the alias table: the integer part picks a column, the rest decides. */
+static inline uint32_t sf_choose_piece(const sf_light_table *lights, float u) {
+    uint32_t last = (uint32_t)lights->count - 1;
+    float place = u * (float)lights->count;
+    uint32_t row = (uint32_t)place;
+    row = row < last ? row : last;
+    return place - (float)row < lights->pieces[row][SF_LIGHT_KEEP] ? row : lights->alias[row];
+}
+
+/* The quarter of the cell and the cell of the light: rays of a bin start close to each other and
+ * end close to each other. */
+static inline uint32_t sf_shadow_bin(uint32_t path, float s, float t) {
+    return path / (SF_LANES * SF_BLOCKS / 4) * 16 + (uint32_t)(int)(s * 4) * 4 + (uint32_t)(int)(t * 4);
+}
+
+#endif
