@@ -60,7 +60,6 @@ bench: packages-bench .venv/.test build/reference/penumbra_256.npy build/referen
 	$(venv) bench/startup.py
 	$(venv) bench/sampling.py
 	$(venv) bench/generators.py
-	$(venv) -m pip install -q matplotlib
 	$(venv) bench/quality.py
 
 # Some 15 minutes of two processors; build/battery/ keeps what was run.
