@@ -13,6 +13,9 @@ cost        samples over those of an oracle that knows every pixel's true varian
 met         share of pixels that met the tolerance before max_spp; the shares above are of these
 bias        mean over seeds of the picture's mean against the truth, in standard errors
 
+"half-buffer", the usual rule of renderers, is replayed: z times half the difference between the means of
+two halves of the samples, its square averaged over 3 x 3 pixels, decides at the same looks.
+
 The truth is a reference that reference.py made with Mitsuba where build/reference holds one of
 this size, else a long render of our own with another seed. The oracle's variances are the
 squared errors of fixed-count renders, over the same seeds and 3 x 3 pixels.
@@ -24,6 +27,7 @@ import argparse
 import json
 import sys
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -72,16 +76,25 @@ def looks() -> Iterator[int]:
         n *= 2
 
 
-def true_variances(scene: sf.Scene, pattern: str, truth: Array, seeds: int) -> dict[int, Array]:
+Record = dict[int, tuple[Array, Array]]
+
+
+def record(scene: sf.Scene, pattern: str, seed: int) -> Record:
+    """For every look at n samples: the mean, and half the difference of its two halves."""
+    sums, taken, found = np.zeros((2, SIZE, SIZE)), 0, {}
+    for n in looks():
+        image = sf.render(
+            scene, SIZE, SIZE, spp=n - taken, start=taken, pattern=pattern, seed=seed, aovs=("half_a", "half_b")
+        )
+        sums += (n - taken) * np.stack([image.aovs[key].mean(axis=2, dtype=np.float64) for key in ("half_a", "half_b")])
+        taken = n
+        found[n] = (sums.sum(axis=0) / (2 * n), (sums[0] - sums[1]) / (2 * n))
+    return found
+
+
+def true_variances(records: list[Record], truth: Array) -> dict[int, Array]:
     """Of the mean of n samples, for every look: the squared errors, averaged."""
-    squares = {n: np.zeros((SIZE, SIZE)) for n in looks()}
-    for seed in range(seeds):
-        mean, taken = np.zeros((SIZE, SIZE)), 0
-        for n in looks():
-            part = level_of(sf.render(scene, SIZE, SIZE, spp=n - taken, start=taken, pattern=pattern, seed=seed))
-            mean, taken = mean + (part - mean) * (n - taken) / n, n
-            squares[n] += (mean - truth) ** 2 / seeds
-    return {n: around(square) for n, square in squares.items()}
+    return {n: around(np.mean([(r[n][0] - truth) ** 2 for r in records], axis=0)) for n in looks()}
 
 
 def oracle_samples(variances: dict[int, Array], tolerance: float) -> Array:
@@ -92,37 +105,50 @@ def oracle_samples(variances: dict[int, Array], tolerance: float) -> Array:
     return samples
 
 
-def try_rule(scene: sf.Scene, truth: Array, needed: Array, seeds: int, **options: object) -> dict[str, float]:
-    """What the rule came to, over all seeds."""
-    hard = needed > FIRST
-    sums = dict.fromkeys(("met", "covered", "within", "hard", "hard_covered", "hard_within"), 0)
-    samples, means = 0.0, []
-    for seed in range(seeds):
-        image = sf.render(scene, SIZE, SIZE, max_spp=MOST, seed=seed, **options)  # type: ignore[arg-type]
-        met, error = image.stop_reason == MET, np.abs(level_of(image) - truth)
-        covered, within = error <= image.half_width, error <= image.summary().tolerance
-        for key, chosen in (
-            ("met", met),
-            ("covered", met & covered),
-            ("within", met & within),
-            ("hard", met & hard),
-            ("hard_covered", met & hard & covered),
-            ("hard_within", met & hard & within),
-        ):
-            sums[key] += int(chosen.sum())
-        samples += float(image.samples.sum(dtype=np.float64))
-        means.append(level_of(image).mean())
-    spread = float(np.std(means, ddof=1) / seeds**0.5) if seeds > 1 else np.inf
-    met_count, hard_count = max(1, sums["met"]), max(1, sums["hard"])
+@dataclass
+class Stopped:
+    """How a rule left a picture."""
+
+    level: Array
+    half_width: Array
+    samples: Array
+    met: NDArray[np.bool_]
+
+
+def run_rule(scene: sf.Scene, tolerance: float, pattern: str, rule: str, seed: int) -> Stopped:
+    image = sf.render(
+        scene, SIZE, SIZE, tolerance=tolerance, min_spp=FIRST, max_spp=MOST, pattern=pattern, stop=rule, seed=seed
+    )
+    return Stopped(level_of(image), image.half_width, image.samples, image.stop_reason == MET)
+
+
+def replay_half_buffer(recorded: Record, tolerance: float) -> Stopped:
+    """`tolerance` is absolute here."""
+    halves = {n: (mean, Z * np.sqrt(around(half**2))) for n, (mean, half) in recorded.items()}
+    level, half_width = (part.copy() for part in halves[MOST])
+    samples = np.full((SIZE, SIZE), float(MOST))
+    for n in reversed(list(looks())):
+        stops = halves[n][1] <= tolerance
+        level, half_width = np.where(stops, halves[n][0], level), np.where(stops, halves[n][1], half_width)
+        samples = np.where(stops, n, samples)
+    return Stopped(level, half_width, samples, half_width <= tolerance)
+
+
+def judge(stopped: list[Stopped], truth: Array, needed: Array, tolerance: float) -> dict[str, float]:
+    """What the rule came to, over all seeds; `tolerance` is absolute."""
+    met, hard = np.stack([s.met for s in stopped]), needed > FIRST
+    error = np.abs(np.stack([s.level for s in stopped]) - truth)
+    covered, within = error <= np.stack([s.half_width for s in stopped]), error <= tolerance
+    share = {"": met, "hard_": met & hard}
+    means = np.array([s.level.mean() for s in stopped])
+    spread = float(np.std(means, ddof=1) / len(means) ** 0.5) if len(means) > 1 else np.inf
     return {
-        "coverage": sums["covered"] / met_count,
-        "hard_coverage": sums["hard_covered"] / hard_count,
-        "within": sums["within"] / met_count,
-        "hard_within": sums["hard_within"] / hard_count,
-        "cost": samples / seeds / needed.sum(),
-        "met": sums["met"] / seeds / SIZE**2,
-        "bias": float((np.mean(means) - truth.mean()) / spread),
-        "bias_relative": float(np.mean(means) / truth.mean() - 1),
+        **{f"{key}coverage": float(covered[chosen].mean()) if chosen.any() else 1 for key, chosen in share.items()},
+        **{f"{key}within": float(within[chosen].mean()) if chosen.any() else 1 for key, chosen in share.items()},
+        "cost": float(np.mean([s.samples.sum(dtype=np.float64) for s in stopped]) / needed.sum()),
+        "met": float(met.mean()),
+        "bias": float((means.mean() - truth.mean()) / spread),
+        "bias_relative": float(means.mean() / truth.mean() - 1),
     }
 
 
@@ -131,7 +157,7 @@ def main() -> None:
     parser.add_argument("scenes", nargs="*", default=list(TOLERANCES), metavar="SCENE", help="default: all four")
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--patterns", nargs="*", default=["sobol", "random"])
-    parser.add_argument("--rules", nargs="*", default=["dyadic", "standard-error", "replicates"])
+    parser.add_argument("--rules", nargs="*", default=["dyadic", "half-buffer", "standard-error"])
     parser.add_argument("--truth-spp", type=int, default=65536, help="of a reference of our own (default 65536)")
     parser.add_argument("-o", "--output", type=Path, default=ROOT / "build/coverage.json")
     args = parser.parse_args()
@@ -145,13 +171,17 @@ def main() -> None:
         truth, source = truth_of(name, scene, args.truth_spp)
         print(f"{name}: {source}; {args.seeds} seeds")
         for pattern in args.patterns:
-            variances = true_variances(scene, pattern, truth, args.seeds)
+            records = [record(scene, pattern, seed) for seed in range(args.seeds)]
+            variances = true_variances(records, truth)
             for tolerance in TOLERANCES[name]:
-                needed = oracle_samples(variances, tolerance * truth.mean())
+                absolute = tolerance * truth.mean()
+                needed = oracle_samples(variances, absolute)
                 for rule in args.rules:
-                    got = try_rule(
-                        scene, truth, needed, args.seeds, tolerance=tolerance, pattern=pattern, stop=rule, min_spp=FIRST
-                    )
+                    if rule == "half-buffer":
+                        stopped = [replay_half_buffer(r, absolute) for r in records]
+                    else:
+                        stopped = [run_rule(scene, tolerance, pattern, rule, seed) for seed in range(args.seeds)]
+                    got = judge(stopped, truth, needed, absolute)
                     rows.append({"scene": name, "pattern": pattern, "rule": rule, "tolerance": tolerance, **got})
                     print(
                         f"{name:9} {pattern:8} {rule:16} {tolerance:<5}"

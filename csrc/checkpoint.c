@@ -515,6 +515,7 @@ static sf_status fill_film(const sf_container *file, sf_checkpoint *c, sf_error 
     c->film->summary.level = c->state.level; /* half-widths may refer to them */
     c->film->summary.tolerance = c->state.tolerance;
     mark_unfinished(c->film, c->open, c->state.second);
+    if (c->film->options.unbiased && !c->state.second) sf_film_mark_pilot(c->film);
     adopt_state(c->film, &c->state);
     return sf_film_describe(c->film, error);
 }

@@ -114,6 +114,13 @@ sf_status sf_film_create(const sf_render_options *options, bool masked, sf_film 
     return status;
 }
 
+void sf_film_mark_pilot(sf_film *film) {
+    for (size_t i = 0; i < (size_t)film->width * film->height; ++i) {
+        sf_film_pixel *pixel = film->pixels + i;
+        if (sf_film_taken(pixel) && pixel->reason != SF_STOP_SUSPICIOUS) pixel->reason = SF_STOP_INTERRUPTED;
+    }
+}
+
 void sf_film_destroy(sf_film *film) {
     if (!film) return;
     sf_aov_destroy(film->aovs);

@@ -114,6 +114,9 @@ struct sf_film {
 /* What a render's own film is made of, for the checkpoint and for merging. */
 sf_status sf_film_identify(sf_film *film, const sf_scene *scene, sf_isa isa, sf_error *error);
 
+/* Marks the pixels of a pilot whose second set was not begun: their samples are those that decided. */
+void sf_film_mark_pilot(sf_film *film);
+
 /* `masked`: with room for a mask, which is the options' where they have one and else still to be filled. */
 sf_status sf_film_create(const sf_render_options *options, bool masked, sf_film **film, sf_error *error);
 

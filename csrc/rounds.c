@@ -276,7 +276,9 @@ static void begin_second(sf_rounds *r) {
 void sf_rounds_run(sf_rounds *r) {
     bool pilot = r->options.unbiased && !r->second;
     run_stage(r);
-    if (pilot && r->sampled != SF_INTERRUPTED) {
+    if (pilot && r->sampled == SF_INTERRUPTED) {
+        sf_film_mark_pilot(r->film);
+    } else if (pilot) {
         begin_second(r);
         run_stage(r);
     }

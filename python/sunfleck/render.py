@@ -556,4 +556,6 @@ def merge(images: Sequence[Image | FilePath]) -> Image:
     if isinstance(images, (str, bytes, os.PathLike)) or not isinstance(images, Sequence):
         raise TypeError(f"images is {images!r}; give a list of images or checkpoint files")
     films = [image._film if isinstance(image, Image) else _core.load_film(given_path(image)) for image in images]
+    if len(films) == 1:  # as it is, a mask and AOVs too
+        return Image(films[0])
     return Image(_core.merge_films(films))

@@ -166,6 +166,7 @@ static void test_stops_within_rounds_change_no_bit(void **state) {
     size_t within = 0;
     for (int kind = 0; kind < KINDS; ++kind) {
         sf_render_options options = kind_of_render(kind);
+        if (options.unbiased) continue; /* a pilot that is out of time is over: what it has decided stays */
         options.width = options.height = 100;
         sf_film *whole = render(scene, &options);
         options.checkpoint_path = FILE_NAME;
@@ -596,8 +597,8 @@ static void test_columns_of_structs_come_back(void **state) {
     }
     size_t size;
     unsigned char *bytes = read_bytes(&size);
-    /* The format as docs/checkpoint.md has it: magic, version 1, 4 arrays, little-endian. */
-    static const unsigned char head[16] = {0x89, 'S', 'F', 'C', 'K', 13, 10, 26, 1, 0, 0, 0, 4, 0, 0, 0};
+    /* The format as docs/checkpoint.md has it: magic, version 2, 4 arrays, little-endian. */
+    static const unsigned char head[16] = {0x89, 'S', 'F', 'C', 'K', 13, 10, 26, 2, 0, 0, 0, 4, 0, 0, 0};
     assert_memory_equal(bytes, head, 16);
     assert_int_equal(size, 24 + 4 * 64 + 72000 + 3000 + 12000 + 8);
     assert_memory_equal(bytes + 24 + 4 * 64 + 24, rows[1].value, 24);
@@ -674,9 +675,12 @@ static void test_merged_half_widths_cover_as_they_claim(void **state) {
         for (int c = 0; c < 3; ++c) error += ((double)a[3 * i + c] - (double)b[3 * i + c]) / 3;
         covered += fabs(error) <= (double)h[i];
     }
-    /* 0.95 within five standard errors of a share of 4,096 pixels, the truth's own error (one
-     * hundredth, in quadrature) and 1 % for estimated variances. */
-    assert_true(fabs((double)covered / (double)pixels - 0.95) < 5 * sqrt(0.95 * 0.05 / (double)pixels) + 0.01);
+    double share = (double)covered / (double)pixels;
+    /* At least 0.95, within five standard errors of a share of 4,096 pixels. At most 0.99: the rule's
+     * half-widths hold at looks of the rule's own choice, and are 1.2 to 1.36 times as wide as a fixed
+     * count needs, 0.979 for the merged. */
+    double deviation = sqrt(0.95 * 0.05 / (double)pixels);
+    assert_true(share > 0.95 - 5 * deviation && share < 0.99);
     for (int i = 0; i < FILMS; ++i) sf_film_destroy(films[i]);
     sf_film_destroy(truth);
     sf_film_destroy(merged);

@@ -34,7 +34,18 @@ def script(text: str, cwd: Path) -> subprocess.CompletedProcess[str]:
 # ---- resuming ----
 
 
-@pytest.mark.parametrize("options", [{"spp": 200}, {"tolerance": 0.03, "max_spp": 512}])
+DISK = np.hypot(*np.mgrid[-20:20, -25:25]) < 17
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"spp": 200},
+        {"tolerance": 0.03, "max_spp": 512},
+        {"spp": 200, "aovs": sf.AOVS, "mask": DISK},
+        {"tolerance": 0.03, "max_spp": 512, "unbiased": True, "aovs": "depth,half_b", "mask": DISK},
+    ],
+)
 def test_a_render_that_progress_stopped_goes_on(penumbra: sf.Scene, tmp_path: Path, options: dict[str, Any]) -> None:
     whole = sf.render(penumbra, 50, 40, **options)
     for stop in range(1, whole.summary().rounds):
@@ -100,6 +111,29 @@ def test_what_does_not_match_is_named(penumbra: sf.Scene, tmp_path: Path, option
     with pytest.raises(ValueError, match=match):
         sf.render(penumbra, **{**made, **options})
     assert path.read_bytes() == before
+
+
+def test_another_mask_is_refused(penumbra: sf.Scene, tmp_path: Path) -> None:
+    path = tmp_path / "mask.ckpt"
+    whole = sf.render(penumbra, 50, 40, spp=32, mask=DISK, aovs="albedo", checkpoint=path)
+    kept = sf.merge([path])
+    assert_same_film(whole, kept)
+    assert np.array_equal(whole.aovs["albedo"], kept.aovs["albedo"])
+    for mask in (None, ~DISK):
+        with pytest.raises(ValueError, match="was made with mask"):
+            sf.render(penumbra, 50, 40, spp=32, mask=mask, aovs="albedo", checkpoint=path)
+    with pytest.raises(ValueError, match="aov"):
+        sf.render(penumbra, 50, 40, spp=32, mask=DISK, aovs="depth", checkpoint=path)
+
+
+def test_a_second_set_does_not_grow(penumbra: sf.Scene, tmp_path: Path) -> None:
+    path = tmp_path / "two.ckpt"
+    made = sf.render(penumbra, 24, 24, tolerance=0.1, unbiased=True, checkpoint=path)
+    with pytest.raises(ValueError, match="unbiased set, and its second set does not grow"):
+        sf.render(penumbra, 24, 24, tolerance=0.05, unbiased=True, checkpoint=path)
+    with pytest.raises(ValueError, match="unbiased"):
+        sf.render(penumbra, 24, 24, tolerance=0.1, checkpoint=path)
+    assert_same_film(made, sf.render(penumbra, 24, 24, tolerance=0.1, unbiased=True, checkpoint=path))
 
 
 def test_another_scene_is_refused(penumbra: sf.Scene, cornell: sf.Scene, tmp_path: Path) -> None:
