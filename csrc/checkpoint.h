@@ -17,8 +17,8 @@ typedef struct sf_round_state {
     uint32_t rounds;      /* finished */
     uint32_t level_fixed; /* 0 or 1 */
     double level, tolerance;
-    double target;  /* of a budget */
-    double seconds; /* of all calls so far */
+    double target;   /* of a budget */
+    double seconds;  /* of all calls so far */
     uint32_t second; /* 1 where the pilot is over and the second set is taken */
     uint64_t traced_samples;
 } sf_round_state;

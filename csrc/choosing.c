@@ -140,8 +140,10 @@ bool sf_rounds_begin_lap(sf_rounds *r) {
     sf_rounds_list_tiles(r);
     r->in_lap = r->tile_count > 0;
     if (!r->in_lap) return false; /* after the last sample there is no look */
-    if (r->second) r->look = least_planned(r);
-    else if (!budget) r->look = sf_stop_next_look(&r->options, r->from);
+    if (r->second)
+        r->look = least_planned(r);
+    else if (!budget)
+        r->look = sf_stop_next_look(&r->options, r->from);
     r->to = r->from;
     r->lap = r->second ? (sf_lap){0, 0} : sf_stop_lap(&r->options, r->look);
     return true;

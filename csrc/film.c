@@ -99,8 +99,8 @@ sf_status sf_film_create(const sf_render_options *options, bool masked, sf_film 
     film->negative_part = sf_filter_negative_part(options->pixel_filter);
     film->parts = malloc(sizeof *film->parts);
     film->part_count = 1;
-    sf_status status = film->parts ? allocate_arrays(film, masked, error)
-                                   : sf_fail_memory(error, "a film", sizeof *film->parts);
+    sf_status status =
+        film->parts ? allocate_arrays(film, masked, error) : sf_fail_memory(error, "a film", sizeof *film->parts);
     if (!status && options->aovs) status = sf_aov_create(options, film, error);
     if (!status) sf_mask_apply(options, film);
     if (!status) {

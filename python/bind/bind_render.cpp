@@ -297,8 +297,8 @@ void bind_render(nb::module_ &m) {
     m.def("render", &render, nb::rv_policy::take_ownership, "scene"_a, nb::kw_only(), "width"_a, "height"_a, "crop"_a,
           "spp"_a, "start"_a, "relative_tolerance"_a, "absolute_tolerance"_a, "confidence"_a, "min_spp"_a, "max_spp"_a,
           "samples"_a, "seconds"_a, "pattern"_a, "pixel_filter"_a, "stop"_a, "unbiased"_a, "seeds"_a, "seed"_a,
-          "threads"_a, "tile_size"_a, "aovs"_a, "mask"_a.none(), "checkpoint"_a.none(), "checkpoint_seconds"_a, "notice"_a,
-          "progress"_a.none());
+          "threads"_a, "tile_size"_a, "aovs"_a, "mask"_a.none(), "checkpoint"_a.none(), "checkpoint_seconds"_a,
+          "notice"_a, "progress"_a.none());
     m.def("load_film", &load_film, nb::rv_policy::take_ownership, "path"_a);
     m.def("merge_films", &merge_films, nb::rv_policy::take_ownership, "films"_a);
 }
