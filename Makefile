@@ -8,7 +8,7 @@ PYTHON ?= python3
 build_packages = build-essential cmake ninja-build python3-dev python3-venv libembree-dev
 demo_packages = $(build_packages) assimp-testmodels
 bench_packages = $(demo_packages) libllvm19
-test_packages = $(demo_packages) libcmocka-dev libopenimageio-dev pkg-config
+test_packages = $(demo_packages) libcmocka-dev libopenimageio-dev pkg-config chromium chromium-driver
 
 sources = CMakeLists.txt pyproject.toml $(shell find cmake csrc python -type f -not -name '*.pyc')
 venv = .venv/bin/python
