@@ -39,6 +39,7 @@ from sunfleck.render import AOVS, PIXEL_FILTERS, STOP_REASONS, Image, Progress, 
 from sunfleck.rng import RNGS, Rng
 from sunfleck.scene import Camera, Mesh, Plan, PlanDimensions, Scene, SceneInfo
 from sunfleck.shapes import Disk, Sphere
+from sunfleck.show import show
 from sunfleck.sky import Environment, Sun
 from sunfleck.tolerance import Tolerance
 
@@ -105,6 +106,7 @@ __all__ = [
     "points",
     "render",
     "scenes",
+    "show",
     "uniformity",
     "valid_counts",
 ]
