@@ -30,6 +30,7 @@ from sunfleck.estimate import (
     VectorMoments,
     WeightedMoments,
 )
+from sunfleck.gallery import gallery
 from sunfleck.integrate import Integral, IntegralLook, integrate
 from sunfleck.load import load
 from sunfleck.mapping import MAPPINGS
@@ -99,6 +100,7 @@ __all__ = [
     "VectorMoments",
     "WeightedMoments",
     "estimate",
+    "gallery",
     "integrate",
     "load",
     "mapping",

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 import sunfleck as sf
 from sunfleck import _core
 from sunfleck._files import replacing, writable_target
+from sunfleck.cli_gallery import add_gallery
 from sunfleck.figure import FIGURE_TYPES, require_matplotlib
 from sunfleck.heatmap import HEATMAPS
 from sunfleck.image import IMAGE_TYPES, RADIANCE_TYPES, read_radiance
@@ -182,6 +183,7 @@ def _parser() -> _Parser:
     _add_render(commands)
     _add_points(commands)
     _add_plan(commands)
+    add_gallery(commands)
     return parser
 
 

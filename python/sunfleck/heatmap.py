@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -119,6 +120,12 @@ def _draw_scale(parts: tuple[Any, Any, Any], values: NDArray[np.float64], how: _
         bar.set_visible(False)
 
 
+def _percent(share: float) -> str:
+    """Rounded down to a hundredth, so that only a whole is called 100 %."""
+    hundredths = math.floor(10_000 * share)
+    return f"{hundredths / 100:g} %" if hundredths else "< 0.01 %"
+
+
 def _draw_reasons(parts: tuple[Any, Any, Any], reasons: NDArray[np.uint8], x0: int, y0: int) -> None:
     from matplotlib.colors import to_rgb
 
@@ -130,7 +137,7 @@ def _draw_reasons(parts: tuple[Any, Any, Any], reasons: NDArray[np.uint8], x0: i
     for number, name in enumerate(names):
         share = float(np.mean(reasons == number))
         if share > 0:
-            ax.plot([], [], "s", color=palette[number], label=f"{name}: {100 * share:.3g} %")
+            ax.plot([], [], "s", color=palette[number], label=f"{name}: {_percent(share)}")
     ax.legend(fontsize=7, loc="upper left", bbox_to_anchor=(1, 1), frameon=False, handletextpad=0.2)
 
 

@@ -21,8 +21,8 @@ __all__ = ["draw_points", "seen", "show"]
 
 _ELEVATION = np.radians(24.0)
 _AZIMUTH = np.radians(-60.0)
-_FAR = "#A9C4D8"  # COLORS[0], paler
-_SIDE = 2.6  # inches
+_FAR = "#93B8D1"  # COLORS[0], paler
+_SIDE, _WIDEST = 2.8, 10.4  # inches: of a set, and of them all
 
 
 def seen(points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -65,7 +65,7 @@ def draw_points(ax: Any, points: ArrayLike, outline: Sequence[ArrayLike] = ()) -
         Lines of the same space.
     """
     array = _checked("points", points)
-    size = float(np.clip(64 / np.sqrt(max(len(array), 1)), 0.8, 4.5))
+    size = float(np.clip(54 / np.sqrt(max(len(array), 1)), 0.8, 4.0))
     style = {
         "linestyle": "none",
         "marker": "o",
@@ -89,6 +89,17 @@ def draw_points(ax: Any, points: ArrayLike, outline: Sequence[ArrayLike] = ()) -
         ax.set_axis_off()
     elif array.min(initial=0) >= 0 and array.max(initial=0) < 1:
         ax.set(xlim=(0, 1), ylim=(0, 1))
+    if outline:
+        ax.margins(0.03)
+
+
+def _fit(drawn: Any, axes: NDArray[Any], side: float, named: bool) -> None:
+    """Gives the figure the height that its axes need in equal units."""
+    rows, columns = axes.shape
+    limits = [(ax.get_xlim(), ax.get_ylim()) for ax in axes.flat if ax.axison or ax.lines]
+    slopes = [(top - bottom) / (right - left) for (left, right), (bottom, top) in limits if right > left]
+    slope = float(np.clip(max(slopes, default=1.0), 0.2, 2.0))
+    drawn.set_size_inches(columns * side, rows * (side * slope + (0.3 if named else 0.0)))
 
 
 def show(points: ArrayLike | Mapping[str, ArrayLike], *, outline: Sequence[ArrayLike] = (), columns: int = 5) -> Figure:
@@ -127,10 +138,12 @@ def show(points: ArrayLike | Mapping[str, ArrayLike], *, outline: Sequence[Array
         raise ValueError("points has no sets in it; give at least one")
     arrays = {name: _checked(f"points {name!r}" if name else "points", values) for name, values in sets.items()}
     columns = min(columns, len(arrays))
-    drawn, axes = new_figure(-(-len(arrays) // columns), columns, _SIDE, _SIDE)
+    side = min(_SIDE, _WIDEST / columns)
+    drawn, axes = new_figure(-(-len(arrays) // columns), columns, side, side)
     for ax, (name, array) in zip(axes.flat, arrays.items(), strict=False):
         draw_points(ax, array, outline)
         ax.set_title(name, fontsize=10)
     for ax in axes.flat[len(arrays) :]:
         ax.set_axis_off()
+    _fit(drawn, axes, side, named=any(arrays))
     return Figure(drawn)

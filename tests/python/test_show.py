@@ -68,8 +68,8 @@ def test_a_heat_map_says_what_it_shows(picture: sf.Image) -> None:
     assert f"half-width at 95 %, linear radiance\n(line: tolerance {tolerance:.3g})" in words(
         picture.heatmap("half_width")
     )
-    share = 100 * picture.summary().share_met
-    assert f"met: {share:.3g} %" in words(picture.heatmap("stop_reason"))
+    assert picture.summary().share_met == 1
+    assert "met: 100 %" in words(picture.heatmap("stop_reason"))
 
 
 def test_a_heat_map_has_the_full_frame_s_coordinates(penumbra: sf.Scene) -> None:
@@ -100,9 +100,20 @@ def test_each_stop_reason_has_its_colour(tmp_path: Path) -> None:
     found = colors_of(figure, 1, count, tmp_path)[0]
     wanted = [to_rgb(heatmaps._REASON_COLORS[name]) for name in sf.STOP_REASONS]
     assert np.abs(found - np.array(wanted)).max() < 1 / 255
+    shares = {text.get_text() for text in figure.drawn.axes[0].get_legend().get_texts()}
+    assert shares == {f"{name}: 14.28 %" for name in sf.STOP_REASONS}
     # Nothing of the legend is cut off.
     legend = figure.drawn.axes[0].get_legend().get_window_extent()
     assert legend.x1 <= figure.drawn.bbox.x1
+
+
+def test_only_a_whole_is_called_100_percent() -> None:
+    reasons = np.full((300, 400), sf.STOP_REASONS.index("met"), np.uint8)
+    reasons[7, 9] = sf.STOP_REASONS.index("suspicious")
+    channels: dict[str, Any] = {"stop_reason": reasons, "samples": np.ones_like(reasons)}
+    figure = heatmaps.heatmap(channels, "stop_reason", {"crop": "0 0 400 300"})
+    texts = [text.get_text() for text in figure.drawn.axes[0].get_legend().get_texts()]
+    assert texts == ["met: 99.99 %", "suspicious: < 0.01 %"]
 
 
 # Machado, Oliveira & Fernandes 2009, "A physiologically-based model for simulation of color vision
