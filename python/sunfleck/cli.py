@@ -173,7 +173,8 @@ def _parser() -> _Parser:
     parser = _Parser(
         prog="sunfleck",
         description="Random numbers into pictures of stated accuracy.",
-        epilog="examples:\n  sunfleck render -o out.exr\n  sunfleck points sobol -n 16\n  sunfleck plan cornell\n\n"
+        epilog="examples:\n  sunfleck render -o out.exr\n  sunfleck points sobol -n 16\n  sunfleck plan cornell\n"
+        "  sunfleck gallery -o gallery\n\n"
         "Each command has its own --help.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

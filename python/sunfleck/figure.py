@@ -175,7 +175,7 @@ def draw_panels(panels: Sequence[Panel], about: str, columns: int = 3) -> Any:
 def png(made: Any) -> bytes:
     """The figure as a PNG file's bytes."""
     buffer = io.BytesIO()
-    made.savefig(buffer, format="png")
+    made.savefig(buffer, format="png", dpi=made.dpi)  # whatever matplotlib's settings say
     return buffer.getvalue()
 
 
@@ -190,7 +190,7 @@ def save(made: Any, path: FilePath) -> None:
         The file can't be written.
     """
     with replacing(path, "figures", FIGURE_TYPES) as target:
-        made.savefig(target, format=target.suffix[1:])
+        made.savefig(target, format=target.suffix[1:], dpi=made.dpi)
 
 
 class Figure:

@@ -69,7 +69,7 @@ def _axes(height: int, width: int, title: str, scale: int) -> tuple[Any, Any, An
 def _show(ax: Any, values: Any, x0: int, y0: int, **how: Any) -> Any:
     height, width = values.shape[:2]
     extent = (x0, x0 + width, y0 + height, y0)
-    return ax.imshow(values, interpolation="nearest", aspect="auto", extent=extent, **how)
+    return ax.imshow(values, interpolation="none", aspect="auto", extent=extent, **how)
 
 
 def _number(value: float) -> str:

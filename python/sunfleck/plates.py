@@ -154,6 +154,8 @@ def _pi_error(studio: Studio) -> Plate:
         pattern: integrate(_circle, d=2, pattern=pattern, tolerance=PI_TOLERANCE, seed=studio.seed)
         for pattern in ("random", "sobol")
     }
+    if any(integral.stop_reason == "interrupted" for integral in found.values()):
+        raise KeyboardInterrupt
     series = [line for pattern, integral in found.items() for line in _pi_series(pattern, integral)]
     panel = Panel("π by the circle, 95 % confidence", "samples", "half-width, and true error", series)
     caption = "; ".join(

@@ -3,7 +3,9 @@
 
 """show: images, point sets and heat maps as pictures: what is drawn, and that every eye can tell it apart."""
 
+import base64
 import itertools
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -57,6 +59,16 @@ def test_a_heat_map_has_every_pixel_in_its_place(picture: sf.Image, tmp_path: Pa
     known = picture.half_width > 0
     wanted = expected(picture.half_width[known].astype(float), "cividis")
     assert np.abs(found[known] - wanted).max() < 0.5 / 255 + 2 / 255
+
+
+def test_a_heat_map_in_svg_holds_every_pixel(penumbra: sf.Scene, tmp_path: Path) -> None:
+    image = sf.render(penumbra, 256, 200, spp=2)  # drawn at 1.4 units a pixel: resampled, some would be lost
+    with matplotlib.rc_context({"savefig.dpi": 37, "figure.dpi": 50}):
+        image.heatmap("samples").save(tmp_path / "map.svg")
+        assert image.heatmap("samples").drawn.axes[0].get_window_extent().width == pytest.approx(512)
+        assert pixels_of(image.heatmap("samples").png(), tmp_path).shape[1] > 512
+    embedded = re.findall(r"base64,([^\"]*)", (tmp_path / "map.svg").read_text())
+    assert pixels_of(base64.b64decode(embedded[0]), tmp_path).shape[:2] == (200, 256)
 
 
 def test_a_heat_map_says_what_it_shows(picture: sf.Image) -> None:
