@@ -8,7 +8,7 @@ PYTHON ?= python3
 build_packages = build-essential cmake ninja-build python3-dev python3-venv libembree-dev
 demo_packages = $(build_packages) assimp-testmodels
 bench_packages = $(demo_packages) libllvm19
-test_packages = $(demo_packages) libcmocka-dev libopenimageio-dev pkg-config
+test_packages = $(demo_packages) libcmocka-dev libopenimageio-dev pkg-config chromium chromium-driver
 
 sources = CMakeLists.txt pyproject.toml $(shell find cmake csrc python -type f -not -name '*.pyc')
 venv = .venv/bin/python
@@ -17,7 +17,7 @@ venv = .venv/bin/python
 MITSUBA_PYTHON = build/mitsuba/bin/python
 with_mitsuba = DRJIT_LIBLLVM_PATH=$$(ls /usr/lib/*/libLLVM.so.19* 2>/dev/null | head -n 1) PYTHONPATH=$$($(venv) -c 'import sysconfig; print(sysconfig.get_path("platlib"))') $(MITSUBA_PYTHON)
 
-.PHONY: help demo test sanitize lint bench battery clean packages-demo packages-test packages-bench build-c
+.PHONY: help demo test sanitize lint bench battery gallery clean packages-demo packages-test packages-bench build-c
 .DELETE_ON_ERROR:
 .NOTPARALLEL: # packages come first; CMake and pip use all processors themselves
 
@@ -28,6 +28,7 @@ help:
 	@echo "make lint      ruff, mypy --strict, warnings as errors, clang-format"
 	@echo "make bench     measures speed and accuracy; figures go to standard output"
 	@echo "make battery   runs dieharder over every generator; writes the table of docs/generators.md"
+	@echo "make gallery   writes docs/gallery.md and its pictures anew"
 	@echo "make clean     removes build/, out/, dist/ and .venv/"
 
 demo: packages-demo .venv/.demo
@@ -64,6 +65,9 @@ bench: packages-bench .venv/.test build/reference/penumbra_256.npy build/referen
 battery: packages-demo .venv/.demo
 	@scripts/install-packages.sh dieharder
 	$(venv) bench/battery.py
+
+gallery: packages-demo .venv/.test
+	$(venv) scripts/make-gallery.py
 
 clean:
 	rm -rf build out dist .venv .pytest_cache .mypy_cache .ruff_cache

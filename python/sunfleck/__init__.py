@@ -30,6 +30,7 @@ from sunfleck.estimate import (
     VectorMoments,
     WeightedMoments,
 )
+from sunfleck.gallery import gallery
 from sunfleck.integrate import Integral, IntegralLook, integrate
 from sunfleck.load import load
 from sunfleck.mapping import MAPPINGS
@@ -39,6 +40,7 @@ from sunfleck.render import AOVS, PIXEL_FILTERS, STOP_REASONS, Image, Progress, 
 from sunfleck.rng import RNGS, Rng
 from sunfleck.scene import Camera, Mesh, Plan, PlanDimensions, Scene, SceneInfo
 from sunfleck.shapes import Disk, Sphere
+from sunfleck.show import show
 from sunfleck.sky import Environment, Sun
 from sunfleck.tolerance import Tolerance
 
@@ -98,6 +100,7 @@ __all__ = [
     "VectorMoments",
     "WeightedMoments",
     "estimate",
+    "gallery",
     "integrate",
     "load",
     "mapping",
@@ -105,6 +108,7 @@ __all__ = [
     "points",
     "render",
     "scenes",
+    "show",
     "uniformity",
     "valid_counts",
 ]

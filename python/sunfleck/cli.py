@@ -20,6 +20,9 @@ from numpy.typing import NDArray
 import sunfleck as sf
 from sunfleck import _core
 from sunfleck._files import replacing, writable_target
+from sunfleck.cli_gallery import add_gallery
+from sunfleck.figure import FIGURE_TYPES, require_matplotlib
+from sunfleck.heatmap import HEATMAPS
 from sunfleck.image import IMAGE_TYPES, RADIANCE_TYPES, read_radiance
 from sunfleck.load import FILE_TYPES, z_is_up
 from sunfleck.scenes import SCENES
@@ -41,6 +44,9 @@ examples:
       a fixed count of samples a pixel
   sunfleck render defocus --seconds 10 -o out.exr
       as good as ten seconds allow
+  sunfleck render --heatmap samples,half_width,stop_reason -o out.png
+      and out.samples.png, out.half_width.png, out.stop_reason.png: where the samples went, how far
+      each pixel may be off, and why it stopped, in colours with a scale
   sunfleck render cornell --checkpoint box.ckpt -o box.exr
       may be stopped or killed: the same command goes on where it was, and a smaller --tolerance
       or larger --spp, --max-spp or --seconds adds to what is there
@@ -86,6 +92,12 @@ def _add_render(commands: argparse._SubParsersAction[_Parser]) -> None:
     parser.add_argument("scene", nargs="?", default="penumbra", metavar="SCENE", help=_SCENE_HELP)
     add = parser.add_argument
     add("-o", "--output", action="append", metavar="FILE", help=".exr or .png; default SCENE.exr; may be repeated")
+    add(
+        "--heatmap",
+        default="",
+        metavar="NAMES",
+        help=f"also FILE.NAME.png of {', '.join(HEATMAPS)}: any of these, with commas between",
+    )
     add("--width", type=int, default=512, metavar="N", help="of the full frame, in pixels; default 512")
     add("--height", type=int, default=512, metavar="N", help="default 512")
     add("--environment", metavar="FILE", help=f"light from all around: {', '.join(RADIANCE_TYPES)}, latitude-longitude")
@@ -162,7 +174,8 @@ def _parser() -> _Parser:
     parser = _Parser(
         prog="sunfleck",
         description="Random numbers into pictures of stated accuracy.",
-        epilog="examples:\n  sunfleck render -o out.exr\n  sunfleck points sobol -n 16\n  sunfleck plan cornell\n\n"
+        epilog="examples:\n  sunfleck render -o out.exr\n  sunfleck points sobol -n 16\n  sunfleck plan cornell\n"
+        "  sunfleck gallery -o gallery\n\n"
         "Each command has its own --help.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -172,6 +185,7 @@ def _parser() -> _Parser:
     _add_render(commands)
     _add_points(commands)
     _add_plan(commands)
+    add_gallery(commands)
     return parser
 
 
@@ -189,10 +203,25 @@ def _scene(name: str, environment: str | None = None, rotation: float = 0.0) -> 
     return sf.Scene(scene.shapes, scene.camera, scene.background, scene.max_bounces, environment=around)
 
 
+def _heatmaps(names: str, output: str) -> dict[str, Path]:
+    """Where each heat map goes: beside the first picture. Refused now rather than after the work."""
+    wanted = [name.strip() for name in names.split(",") if name.strip()]
+    for name in wanted:
+        if name not in HEATMAPS:
+            raise ValueError(f"--heatmap is {name!r}; heat maps are drawn of {', '.join(HEATMAPS)}")
+    paths = {name: Path(output).with_suffix(f".{name}.png") for name in wanted}
+    for path in paths.values():
+        writable_target(path, "figures", FIGURE_TYPES)
+    if wanted:
+        require_matplotlib()
+    return paths
+
+
 def _render(given: argparse.Namespace) -> int:
     outputs = given.output or [f"{Path(given.scene).stem}.exr"]
     for output in outputs:
         writable_target(output, "pictures", IMAGE_TYPES)  # refused now rather than after the work
+    heatmaps = _heatmaps(given.heatmap, outputs[0])
     failure = None
     try:
         image = _rendered(given)
@@ -200,6 +229,8 @@ def _render(given: argparse.Namespace) -> int:
         image, failure = error.image, error
     for output in outputs:
         image.save(output)
+    for name, path in heatmaps.items():
+        image.heatmap(name).save(path)
     print(image.summary())
     if failure:
         raise failure

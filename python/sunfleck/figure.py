@@ -16,7 +16,20 @@ from numpy.typing import ArrayLike, NDArray
 from sunfleck._files import FilePath, replacing
 from sunfleck.error import Error
 
-__all__ = ["COLORS", "FIGURE_TYPES", "Panel", "Series", "draw_panels", "new_figure", "plotly_figure", "png", "save"]
+__all__ = [
+    "COLORS",
+    "FIGURE_TYPES",
+    "Figure",
+    "Panel",
+    "Series",
+    "bare_figure",
+    "draw_panels",
+    "new_figure",
+    "plotly_figure",
+    "png",
+    "require_matplotlib",
+    "save",
+]
 
 FIGURE_TYPES = (".png", ".svg")
 
@@ -60,6 +73,17 @@ def _pyplot() -> Any:
     return figure
 
 
+def require_matplotlib() -> None:
+    """Raises where figures can't be drawn, before work whose end is a figure.
+
+    Raises
+    ------
+    sunfleck.Error
+        matplotlib is not installed.
+    """
+    _pyplot()
+
+
 def new_figure(rows: int, columns: int, width: float = 4.6, height: float = 3.6) -> tuple[Any, NDArray[Any]]:
     """A figure with rows x columns of axes, each so many inches.
 
@@ -74,6 +98,17 @@ def new_figure(rows: int, columns: int, width: float = 4.6, height: float = 3.6)
     """
     made = _pyplot().Figure(figsize=(columns * width, rows * height + 0.4), dpi=110, layout="constrained")
     return made, made.subplots(rows, columns, squeeze=False)
+
+
+def bare_figure(width: float, height: float, dpi: float) -> Any:
+    """A figure of so many inches without axes, for what lays out its own.
+
+    Raises
+    ------
+    sunfleck.Error
+        matplotlib is not installed.
+    """
+    return _pyplot().Figure(figsize=(width, height), dpi=dpi)
 
 
 def _style(series: Series, number: int) -> dict[str, Any]:
@@ -140,7 +175,7 @@ def draw_panels(panels: Sequence[Panel], about: str, columns: int = 3) -> Any:
 def png(made: Any) -> bytes:
     """The figure as a PNG file's bytes."""
     buffer = io.BytesIO()
-    made.savefig(buffer, format="png")
+    made.savefig(buffer, format="png", dpi=made.dpi)  # whatever matplotlib's settings say
     return buffer.getvalue()
 
 
@@ -155,7 +190,45 @@ def save(made: Any, path: FilePath) -> None:
         The file can't be written.
     """
     with replacing(path, "figures", FIGURE_TYPES) as target:
-        made.savefig(target, format=target.suffix[1:])
+        made.savefig(target, format=target.suffix[1:], dpi=made.dpi)
+
+
+class Figure:
+    """A figure that shows itself in a notebook.
+
+    Attributes
+    ----------
+    drawn : matplotlib.figure.Figure
+        To add to, or to draw otherwise.
+
+    Examples
+    --------
+    >>> import sunfleck as sf
+    >>> sf.show(sf.points("sobol", 64)).png()[1:4]
+    b'PNG'
+    """
+
+    def __init__(self, drawn: Any) -> None:
+        self.drawn = drawn
+
+    def png(self) -> bytes:
+        """A PNG file's bytes."""
+        return png(self.drawn)
+
+    def save(self, path: FilePath) -> None:
+        """Writes the figure beside `path`, then renames it; .png or .svg.
+
+        Raises
+        ------
+        ValueError
+            Another ending.
+        OSError
+            The file can't be written.
+        """
+        save(self.drawn, path)
+
+    def _repr_png_(self) -> bytes:
+        return self.png()
 
 
 def plotly_figure(panel: Panel, names: dict[str, int]) -> dict[str, Any]:

@@ -5,7 +5,9 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,6 +20,7 @@ __all__ = [
     "RADIANCE_TYPES",
     "encode_srgb",
     "false_color",
+    "png_bytes",
     "read_radiance",
     "write_channels",
     "write_false_color",
@@ -161,6 +164,14 @@ def write_channels(path: FilePath, channels: Channels, attributes: Mapping[str, 
         _write(path, _png(channels), "RGB", {})
     else:
         _write(path, _exr(channels), [name for name, _ in channels], attributes)
+
+
+def png_bytes(channels: Channels) -> bytes:
+    """What `write_channels` writes into a .png."""
+    with tempfile.TemporaryDirectory(prefix="sunfleck-") as folder:  # OpenImageIO's Python writes files only
+        path = Path(folder, "picture.png")
+        write_channels(path, channels, {})
+        return path.read_bytes()
 
 
 def write_false_color(path: FilePath, values: ArrayLike, low: float | None = None, high: float | None = None) -> None:

@@ -23,7 +23,7 @@ _STYLE = """
 body { font: 15px/1.5 sans-serif; max-width: 72rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
 figure { display: inline-block; margin: .5rem 1rem .5rem 0; vertical-align: top; max-width: 100%; }
 figure img { max-width: 100%; cursor: zoom-in; }
-figcaption { color: #555; max-width: 40rem; }
+figcaption { color: #555; max-width: 40rem; min-width: 12rem; contain: inline-size; }
 button { font: inherit; margin: .2rem 0; }
 #zoom { position: fixed; inset: 0; background: #000d; display: none; cursor: zoom-out; }
 #zoom img { width: 100%; height: 100%; object-fit: contain; image-rendering: pixelated; }

@@ -20,7 +20,9 @@ from sunfleck._arguments import integer, number, text
 from sunfleck._core import Progress
 from sunfleck._files import FilePath, given_path
 from sunfleck.error import CheckpointError
-from sunfleck.image import write_channels, write_false_color
+from sunfleck.figure import Figure
+from sunfleck.heatmap import heatmap
+from sunfleck.image import png_bytes, write_channels, write_false_color
 from sunfleck.scene import Scene
 from sunfleck.tolerance import Tolerance
 
@@ -164,6 +166,7 @@ class Image:
     Notes
     -----
     The arrays are read-only views of the library's memory, which lives as long as any of them.
+    In a notebook an image shows its colours.
     """
 
     def __init__(self, film: _core.Film) -> None:
@@ -228,6 +231,41 @@ class Image:
         if channel not in named:
             raise ValueError(f"channel is {channel!r}; the image has {', '.join(named)}")
         write_false_color(path, named[channel])
+
+    def heatmap(self, channel: str = "samples") -> Figure:
+        """A channel in colours, with its scale and unit; it shows itself in a notebook.
+
+        Parameters
+        ----------
+        channel : "samples", "half_width" or "stop_reason"
+            Counts and half-widths have a logarithmic scale from dark to light, the tolerance is
+            marked on it, and pixels of which nothing is known are grey. Stop reasons have a
+            colour each, and the share of their pixels. All are told apart with every kind of
+            colour vision. A pixel of the image is a whole number of the figure's.
+
+        Returns
+        -------
+        sunfleck.figure.Figure
+            With ``save`` to .png or .svg.
+
+        Raises
+        ------
+        ValueError
+            Another channel.
+        sunfleck.Error
+            matplotlib is not installed.
+
+        Examples
+        --------
+        >>> import sunfleck as sf
+        >>> image = sf.render(sf.scenes.penumbra(), 32, 24, tolerance=0.1)
+        >>> image.heatmap("half_width").png()[1:4]
+        b'PNG'
+        """
+        return heatmap(dict(self.channels), channel, self.metadata)
+
+    def _repr_png_(self) -> bytes:
+        return png_bytes(self.channels)
 
     def __repr__(self) -> str:
         return f"Image({self.width} x {self.height}, {int(self.samples.sum(dtype=np.uint64))} samples)"
