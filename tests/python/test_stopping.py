@@ -34,7 +34,9 @@ def test_a_pilot_decides_as_the_plain_render_does(penumbra: sf.Scene) -> None:
 def test_the_second_set_is_independent_of_the_pilot(penumbra: sf.Scene, stop: str) -> None:
     options: dict[str, Any] = {"tolerance": 0.1, "stop": stop, "pattern": "random"}
     truth = level(sf.render(penumbra, 40, 40, spp=16384, seed=9))
-    plain, both = (level(sf.render(penumbra, 40, 40, unbiased=unbiased, **options)) - truth for unbiased in (0, 1))
+    plain, both = (
+        level(sf.render(penumbra, 40, 40, unbiased=unbiased, **options)) - truth for unbiased in (False, True)
+    )
     assert (plain != both).mean() > 0.5
     # sobol's 16,384 samples leave some thousandth of the variance of at most 2,000 random ones.
     assert abs(np.corrcoef(plain.ravel(), both.ravel())[0, 1]) < 4 / np.sqrt(plain.size)
