@@ -403,11 +403,12 @@ def _ggx(
         raise ValueError(f"{name} has shape {array.shape}; give (..., 3)")
     leading = array.shape[:-1]
     other = None if v is None else _parameter("v", 3, v, leading, array.dtype)
-    alphas = [_parameter(n, 1, a, leading, array.dtype) for n, a in (("alpha_x", alpha_x), ("alpha_y", alpha_y))]
+    across = _parameter("alpha_x", 1, alpha_x, leading, array.dtype)
+    along = _parameter("alpha_y", 1, alpha_y, leading, array.dtype)
     target = output_array(out, leading, array.dtype)
-    if any(np.may_share_memory(target, given) for given in (array, other, *alphas) if given is not None):
+    if any(np.may_share_memory(target, given) for given in (array, other, across, along) if given is not None):
         raise ValueError("out overlaps an input; give an array of its own")
-    _core.ggx_fill(term, array, other, *alphas, target)
+    _core.ggx_fill(term, array, other, across, along, target)
     return target
 
 
