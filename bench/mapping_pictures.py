@@ -27,7 +27,7 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt
 
 FOLDER = Path(__file__).resolve().parent.parent / "docs/mapping"
-PATTERNS = ["uniform", "random", "jittered", "halton"]
+PATTERNS = ["uniform", "random", "jittered", "halton", "sobol"]
 CORNERS = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.5, 3**0.5 / 2, 0.0))
 SHAPES: dict[str, tuple[str, dict[str, Any]]] = {
     "disk": ("disk_polar", {}),
@@ -39,9 +39,26 @@ SHAPES: dict[str, tuple[str, dict[str, Any]]] = {
     "cosine_hemisphere": ("cosine_hemisphere", {}),
     "cosine_hemisphere_concentric": ("cosine_hemisphere_concentric", {}),
     "sphere": ("sphere", {}),
+    "parallelogram": ("parallelogram", {"a": (-0.8, -0.5, 0), "b": (0.4, -0.5, 0), "c": (-0.4, 0.5, 0)}),
+    "annulus": ("annulus", {"inner": 0.5}),
+    "regular_polygon": ("regular_polygon", {"sides": 6}),
+    "cone": ("cone", {"angle": 0.7}),
+    "power_cosine": ("power_cosine", {"exponent": 8}),
+    "henyey_greenstein": ("henyey_greenstein", {"g": 0.5}),
+    "ggx_visible_normals": ("ggx_visible_normals", {"w": (0.6, 0, 0.8), "alpha_x": 0.5, "alpha_y": 0.5}),
+    "spherical_triangle": ("spherical_triangle", {"a": (1, 0, 0.2), "b": (-1, -1, 0.2), "c": (0, 1, 1)}),
+    "spherical_rectangle": ("spherical_rectangle", {"a": (-1, -1, 0.4), "b": (1, -1, 0.4), "c": (-1, 1, 0.4)}),
     "pixel_tent": ("pixel_tent", {}),
     "pixel_gaussian": ("pixel_gaussian", {}),
+    "pixel_gaussian_truncated": ("pixel_gaussian_truncated", {}),
+    "pixel_blackman_harris": ("pixel_blackman_harris", {}),
+    "pixel_mitchell": ("pixel_mitchell", {}),
+    "pixel_lanczos": ("pixel_lanczos", {}),
 }
+MEASURED = ("disk_polar", "disk_concentric", "triangle", "triangle_low_distortion", "hemisphere", "cosine_hemisphere")
+MEASURED += ("cosine_hemisphere_concentric", "sphere")
+ABOUT_THE_POLE = ("hemisphere", "cosine_hemisphere", "cosine_hemisphere_concentric", "cone", "power_cosine")
+ABOUT_THE_POLE += ("ggx_visible_normals", "spherical_triangle", "spherical_rectangle")
 
 
 def points_on(shape: str, pattern: str, n: int, seed: int = 1) -> np.ndarray:
@@ -64,9 +81,9 @@ def outline(ax: Any, shape: str) -> None:
 
 def seen(shape: str, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Directions seen from a little above the horizon, the pole up, and how near they are; the flat as it is."""
-    if x.shape[1] == 2 or shape.startswith("triangle"):
+    if x.shape[1] == 2 or shape.startswith(("triangle", "parallelogram")):
         return x[:, :2], np.ones(len(x))
-    if "hemisphere" in shape:
+    if shape in ABOUT_THE_POLE:
         lift = np.radians(25)
         depth = -x[:, 1] * np.cos(lift) + x[:, 2] * np.sin(lift)
         flat = np.stack([x[:, 0], x[:, 2] * np.cos(lift) + x[:, 1] * np.sin(lift)], axis=1)
@@ -76,7 +93,7 @@ def seen(shape: str, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def draw(shape: str, n: int) -> None:
-    figure, axes = plt.subplots(1, len(PATTERNS), figsize=(8, 2.2), dpi=110, constrained_layout=True)
+    figure, axes = plt.subplots(1, len(PATTERNS), figsize=(9, 2.1), dpi=110, constrained_layout=True)
     for ax, pattern in zip(axes, PATTERNS, strict=True):
         flat, depth = seen(shape, points_on(shape, pattern, n))
         outline(ax, shape)
@@ -131,7 +148,7 @@ def table(n: int, seeds: int) -> None:
     print("|---|---|---|---|---|---|---|---|")
     areas = {"disk": np.pi, "triangle": 3**0.5 / 4, "hemisphere": 2 * np.pi, "cosine": np.pi, "sphere": 4 * np.pi}
     for shape, (name, _) in SHAPES.items():
-        if shape.startswith("pixel") or shape == "disk_naive":
+        if name not in MEASURED:
             continue
         test, share = cuts(shape, np.random.default_rng(0), 4096)
         row: list[list[str]] = [[], []]

@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <type_traits>
 
 #include "bind.h"
 #include "sunfleck/mapping.h"
@@ -72,6 +73,22 @@ void fill(const std::string &operation, const std::string &name, flat_array<cons
     call([&](sf_error *error) { return function(mapping, count, input.data(), pointers, strides, out.data(), error); });
 }
 
+// A term of a GGX microsurface; v is None but for the third, alphas are one value or one for each point.
+template <class T>
+void fill_ggx(int term, flat_array<const T> w, std::optional<flat_array<const T>> v, flat_array<const T> alpha_x,
+              flat_array<const T> alpha_y, flat_array<T> out) {
+    size_t strides[3] = {v && v->ndim() > 1 ? size_t(3) : 0, alpha_x.ndim() > 0, alpha_y.ndim() > 0};
+    const T *second = v ? v->data() : nullptr;
+    call([&](sf_error *error) {
+        if constexpr (std::is_same_v<T, float>)
+            return sf_ggx_fill_f32(static_cast<sf_ggx_term>(term), w.size() / 3, w.data(), second, alpha_x.data(),
+                                   alpha_y.data(), strides, out.data(), error);
+        else
+            return sf_ggx_fill_f64(static_cast<sf_ggx_term>(term), w.size() / 3, w.data(), second, alpha_x.data(),
+                                   alpha_y.data(), strides, out.data(), error);
+    });
+}
+
 }  // namespace
 
 void bind_mapping(nb::module_ &m) {
@@ -81,4 +98,8 @@ void bind_mapping(nb::module_ &m) {
           "out"_a.noconvert());
     m.def("mapping_fill", &fill<double>, "operation"_a, "name"_a, "points"_a.noconvert(), "parameters"_a,
           "out"_a.noconvert());
+    m.def("ggx_fill", &fill_ggx<float>, "term"_a, "w"_a.noconvert(), "v"_a.noconvert().none(), "alpha_x"_a.noconvert(),
+          "alpha_y"_a.noconvert(), "out"_a.noconvert());
+    m.def("ggx_fill", &fill_ggx<double>, "term"_a, "w"_a.noconvert(), "v"_a.noconvert().none(), "alpha_x"_a.noconvert(),
+          "alpha_y"_a.noconvert(), "out"_a.noconvert());
 }

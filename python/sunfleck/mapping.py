@@ -38,6 +38,9 @@ __all__ = [
     "disk_concentric",
     "disk_naive",
     "disk_polar",
+    "ggx_masking",
+    "ggx_masking_shadowing",
+    "ggx_normals",
     "ggx_visible_normals",
     "hemisphere",
     "henyey_greenstein",
@@ -221,7 +224,7 @@ class Mapping:
         leading = array.shape[:-1]
         values = self._bind(operation, placed, named)
         parameters = [
-            None if value is None else self._parameter(name, components, value, leading, array.dtype)
+            None if value is None else _parameter(name, components, value, leading, array.dtype)
             for (name, components, _, _), value in zip(self._parameters, values, strict=True)
         ]
         target = output_array(out, leading + result, array.dtype)
@@ -250,23 +253,163 @@ class Mapping:
                 raise TypeError(f"{call} needs its parameter {name!r}: {allowed}")
         return [given.get(name) for name in names]
 
-    def _parameter(
-        self, name: str, components: int, value: ArrayLike, leading: tuple[int, ...], dtype: np.dtype[Any]
-    ) -> NDArray[Any]:
-        """One value for all points, or one for each, packed."""
-        array = real_array(name, value, dtype)
-        one = () if components == 1 else (components,)
-        if array.shape == one:
-            return array
-        try:
-            return np.ascontiguousarray(np.broadcast_to(array, leading + one))
-        except ValueError:
-            raise ValueError(
-                f"{name} has shape {array.shape}; give {one}, or one for each point, {leading + one}"
-            ) from None
-
     def __repr__(self) -> str:
         return f"<mapping {self.name}: {self.description}>"
+
+
+def _parameter(
+    name: str, components: int, value: ArrayLike, leading: tuple[int, ...], dtype: np.dtype[Any]
+) -> NDArray[Any]:
+    """One value for all points, or one for each, packed."""
+    array = real_array(name, value, dtype)
+    one = () if components == 1 else (components,)
+    if array.shape == one:
+        return array
+    try:
+        return np.ascontiguousarray(np.broadcast_to(array, leading + one))
+    except ValueError:
+        raise ValueError(
+            f"{name} has shape {array.shape}; give {one}, or one for each point, {leading + one}"
+        ) from None
+
+
+def ggx_normals(
+    h: ArrayLike, alpha_x: ArrayLike, alpha_y: ArrayLike, *, out: NDArray[Any] | None = None
+) -> NDArray[Any]:
+    """The density of the normals of a GGX surface: its D term, per solid angle and unit of surface.
+
+    Parameters
+    ----------
+    h : array_like, shape (..., 3)
+        Normals of length 1.
+    alpha_x, alpha_y : array_like
+        Roughness, in [1e-4, 10]: one for all, or one for each normal.
+    out : ndarray, optional
+        Filled in place: of the result's shape and dtype, C-contiguous, apart from the input.
+
+    Returns
+    -------
+    ndarray, shape (...), dtype of ``h``
+        Its integral times h_z over the hemisphere is 1; 0 below the horizon.
+
+    Raises
+    ------
+    ValueError, TypeError
+        As `Mapping.sample`; a direction that has not length 1.
+
+    References
+    ----------
+    Trowbridge & Reitz 1975; Walter et al. 2007, eq. 33.
+
+    Examples
+    --------
+    >>> import sunfleck as sf
+    >>> print(f"{sf.mapping.ggx_normals((0.0, 0.0, 1.0), 0.5, 0.5):.4f}")  # 1 / (pi alpha^2)
+    1.2732
+    """
+    return _ggx(0, "h", h, None, alpha_x, alpha_y, out)
+
+
+def ggx_masking(
+    w: ArrayLike, alpha_x: ArrayLike, alpha_y: ArrayLike, *, out: NDArray[Any] | None = None
+) -> NDArray[Any]:
+    """Smith's masking G1 of a GGX surface: the share of what faces w that is seen from w.
+
+    The density of `ggx_visible_normals` at h is ``ggx_masking(w) max(0, w.h) ggx_normals(h) / w_z``.
+
+    Parameters
+    ----------
+    w : array_like, shape (..., 3)
+        Directions of length 1 away from the surface.
+    alpha_x, alpha_y : array_like
+        Roughness, in [1e-4, 10]: one for all, or one for each direction.
+    out : ndarray, optional
+        Filled in place: of the result's shape and dtype, C-contiguous, apart from the input.
+
+    Returns
+    -------
+    ndarray, shape (...), in [0, 1], dtype of ``w``
+        0 at the horizon and below.
+
+    Raises
+    ------
+    ValueError, TypeError
+        As `Mapping.sample`; a direction that has not length 1.
+
+    References
+    ----------
+    Heitz 2014, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", eq. 72.
+
+    Examples
+    --------
+    >>> import sunfleck as sf
+    >>> print(f"{sf.mapping.ggx_masking((0.6, 0.0, 0.8), 1.0, 1.0):.4f}")  # 2 z / (z + 1)
+    0.8889
+    """
+    return _ggx(1, "w", w, None, alpha_x, alpha_y, out)
+
+
+def ggx_masking_shadowing(
+    w: ArrayLike, v: ArrayLike, alpha_x: ArrayLike, alpha_y: ArrayLike, *, out: NDArray[Any] | None = None
+) -> NDArray[Any]:
+    """Smith's masking and shadowing G2 of a GGX surface, height-correlated: seen from w and from v.
+
+    Parameters
+    ----------
+    w : array_like, shape (..., 3)
+        Directions of length 1 away from the surface.
+    v : array_like, shape (3,) or (..., 3)
+        The other direction: one for all, or one for each of ``w``.
+    alpha_x, alpha_y : array_like
+        Roughness, in [1e-4, 10]: one for all, or one for each direction.
+    out : ndarray, optional
+        Filled in place: of the result's shape and dtype, C-contiguous, apart from the input.
+
+    Returns
+    -------
+    ndarray, shape (...), in [0, 1], dtype of ``w``
+        At most `ggx_masking` of either; 0 where either is at the horizon or below.
+
+    Raises
+    ------
+    ValueError, TypeError
+        As `Mapping.sample`; a direction that has not length 1.
+
+    References
+    ----------
+    Heitz 2014, eq. 99.
+
+    Examples
+    --------
+    >>> import sunfleck as sf
+    >>> w = (0.6, 0.0, 0.8)
+    >>> print(f"{sf.mapping.ggx_masking_shadowing(w, w, 1.0, 1.0):.4f}")  # z
+    0.8000
+    """
+    return _ggx(2, "w", w, v, alpha_x, alpha_y, out)
+
+
+def _ggx(
+    term: int,
+    name: str,
+    directions: ArrayLike,
+    v: ArrayLike | None,
+    alpha_x: ArrayLike,
+    alpha_y: ArrayLike,
+    out: NDArray[Any] | None,
+) -> NDArray[Any]:
+    array = real_array(name, directions, None)
+    if array.ndim < 1 or array.shape[-1] != 3:
+        raise ValueError(f"{name} has shape {array.shape}; give (..., 3)")
+    leading = array.shape[:-1]
+    other = None if v is None else _parameter("v", 3, v, leading, array.dtype)
+    across = _parameter("alpha_x", 1, alpha_x, leading, array.dtype)
+    along = _parameter("alpha_y", 1, alpha_y, leading, array.dtype)
+    target = output_array(out, leading, array.dtype)
+    if any(np.may_share_memory(target, given) for given in (array, other, across, along) if given is not None):
+        raise ValueError("out overlaps an input; give an array of its own")
+    _core.ggx_fill(term, array, other, across, along, target)
+    return target
 
 
 pixel_box = Mapping("pixel_box")

@@ -11,6 +11,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -275,6 +276,40 @@ static void test_masking_is_smiths(void **state) {
     assert_true(sf_ggx_masking(horizon, 0.5f, 0.5f) == 0.0f);
 }
 
+static void test_ggx_terms_in_bulk_are_the_inline_functions(void **state) {
+    (void)state;
+    enum { COUNT = 77 };
+    float w[3 * COUNT], v[3 * COUNT], alpha[COUNT], masking[COUNT], both[COUNT], normals[COUNT];
+    const size_t each[3] = {3, 1, 1};
+    for (size_t i = 0; i < COUNT; ++i) {
+        sf_sphere_sample(unit(1, i), unit(2, i), w + 3 * i);
+        sf_sphere_sample(unit(4, i), unit(5, i), v + 3 * i);
+        alpha[i] = 0.01f + unit(3, i);
+    }
+    const float one_alpha = 0.5f;
+    sf_error error;
+    assert_int_equal(sf_ggx_fill_f32(SF_GGX_MASKING_SHADOWING, COUNT, w, v, alpha, alpha, each, both, &error),
+                     SF_STATUS_OK);
+    assert_int_equal(sf_ggx_fill_f32(SF_GGX_MASKING, COUNT, w, NULL, alpha, alpha, each, masking, &error),
+                     SF_STATUS_OK);
+    assert_int_equal(sf_ggx_fill_f32(SF_GGX_NORMALS, COUNT, w, NULL, &one_alpha, &one_alpha, NULL, normals, &error),
+                     SF_STATUS_OK);
+    for (size_t i = 0; i < COUNT; ++i) {
+        assert_true(both[i] == sf_ggx_masking_shadowing(w + 3 * i, v + 3 * i, alpha[i], alpha[i]));
+        assert_true(masking[i] == sf_ggx_masking(w + 3 * i, alpha[i], alpha[i]));
+        assert_true(normals[i] == sf_ggx_normals(w + 3 * i, 0.5f, 0.5f));
+    }
+    w[3 * 5] = NAN;
+    masking[0] = -1.0f;
+    assert_int_equal(sf_ggx_fill_f32(SF_GGX_MASKING, COUNT, w, NULL, alpha, alpha, each, masking, &error),
+                     SF_STATUS_INVALID_VALUE);
+    assert_non_null(strstr(error.message, "w[5]"));
+    assert_true(masking[0] == -1.0f);
+    const size_t odd[3] = {0, 2, 0};
+    assert_int_equal(sf_ggx_fill_f32(SF_GGX_MASKING, 5, w, NULL, alpha, alpha, odd, masking, &error),
+                     SF_STATUS_INVALID_VALUE);
+}
+
 /* ---- lights by solid angle ---- */
 
 static const float nowhere[3] = {0, 0, 0};
@@ -453,6 +488,7 @@ int main(void) {
         cmocka_unit_test(test_a_power_of_0_is_uniform_and_of_1_the_cosine),
         cmocka_unit_test(test_visible_normals_seen_from_above_are_all_normals),
         cmocka_unit_test(test_masking_is_smiths),
+        cmocka_unit_test(test_ggx_terms_in_bulk_are_the_inline_functions),
         cmocka_unit_test(test_known_solid_angles),
         cmocka_unit_test(test_lights_keep_single_precision_at_any_size_and_height),
         cmocka_unit_test(test_lights_of_no_solid_angle_have_directions_and_an_infinite_density),

@@ -125,6 +125,28 @@ sf_status sf_mapping_invert_fill_f32(sf_mapping mapping, size_t count, const flo
 sf_status sf_mapping_invert_fill_f64(sf_mapping mapping, size_t count, const double *x, const double *const *parameters,
                                      const size_t *strides, double *u, sf_error *error);
 
+/* The terms of a GGX microsurface (mapping_lobe.h) beside its visible normals. */
+typedef enum sf_ggx_term {
+    SF_GGX_NORMALS = 0,       /* the density of the normals at w = h, per solid angle and unit of surface */
+    SF_GGX_MASKING,           /* Smith's G1: the share of what faces w that is seen from it */
+    SF_GGX_MASKING_SHADOWING, /* Smith's G2, height-correlated: seen from w and from v */
+    SF_GGX_TERM_COUNT
+} sf_ggx_term;
+
+/* A term for `count` directions.
+ *
+ * w, v              directions of length 1 (within 1e-5 of its square), packed; v only for
+ *                   MASKING_SHADOWING, else NULL. Below the horizon every term is 0
+ * alpha_x, alpha_y  roughness, in [1e-4, 10]
+ * strides           of v (0 or 3), alpha_x and alpha_y (0 or 1): 0 = one for all. NULL: all 0
+ * values            `count`, apart from the inputs; nothing is written when an input is refused
+ *
+ * The inline functions' own results, bit for bit (float). Thread-safe. */
+sf_status sf_ggx_fill_f32(sf_ggx_term term, size_t count, const float *w, const float *v, const float *alpha_x,
+                          const float *alpha_y, const size_t *strides, float *values, sf_error *error);
+sf_status sf_ggx_fill_f64(sf_ggx_term term, size_t count, const double *w, const double *v, const double *alpha_x,
+                          const double *alpha_y, const size_t *strides, double *values, sf_error *error);
+
 #ifdef __cplusplus
 }
 #endif
