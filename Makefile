@@ -17,7 +17,7 @@ venv = .venv/bin/python
 MITSUBA_PYTHON = build/mitsuba/bin/python
 with_mitsuba = DRJIT_LIBLLVM_PATH=$$(ls /usr/lib/*/libLLVM.so.19* 2>/dev/null | head -n 1) PYTHONPATH=$$($(venv) -c 'import sysconfig; print(sysconfig.get_path("platlib"))') $(MITSUBA_PYTHON)
 
-.PHONY: help demo test sanitize lint bench battery gallery clean packages-demo packages-test packages-bench build-c
+.PHONY: help demo test sanitize lint docs bench battery gallery clean packages-demo packages-test packages-bench build-c
 .DELETE_ON_ERROR:
 .NOTPARALLEL: # packages come first; CMake and pip use all processors themselves
 
@@ -26,6 +26,7 @@ help:
 	@echo "make test      builds everything, runs the C and the Python tests"
 	@echo "make sanitize  runs the C tests under AddressSanitizer with UBSan, then ThreadSanitizer"
 	@echo "make lint      ruff, mypy --strict, warnings as errors, clang-format"
+	@echo "make docs      builds the site into build/site/, which needs no network to be read"
 	@echo "make bench     measures speed and accuracy; figures go to standard output"
 	@echo "make battery   runs dieharder over every generator; writes the table of docs/generators.md"
 	@echo "make gallery   writes docs/gallery.md and its pictures anew"
@@ -54,12 +55,17 @@ lint: packages-test .venv/.lint
 	cmake --build build/lint
 	scripts/check-format.sh
 
+docs: packages-demo .venv/.docs
+	$(venv) -m sphinx -W --keep-going -q -b html -d build/site-read docs build/site
+	@echo "build/site/index.html"
+
 bench: packages-bench .venv/.test build/reference/penumbra_256.npy build/reference/cornell_256.npy
 	$(with_mitsuba) bench/render.py
 	$(venv) bench/startup.py
 	$(venv) bench/sampling.py
 	$(venv) bench/generators.py
 	$(venv) bench/quality.py
+	$(venv) bench/which_pattern.py
 
 # Some 15 minutes of two processors; build/battery/ keeps what was run.
 battery: packages-demo .venv/.demo
@@ -70,7 +76,7 @@ gallery: packages-demo .venv/.test
 	$(venv) scripts/make-gallery.py
 
 clean:
-	rm -rf build out dist .venv .pytest_cache .mypy_cache .ruff_cache
+	rm -rf build out dist docs/reference .venv .pytest_cache .mypy_cache .ruff_cache
 
 packages-demo:
 	@scripts/install-packages.sh $(demo_packages)
@@ -103,6 +109,10 @@ build/wheel/.built: $(sources) | .venv/.created
 
 .venv/.test: .venv/.demo
 	$(venv) -m pip install -q "$$(echo build/wheel/*.whl)[test]"
+	touch $@
+
+.venv/.docs: .venv/.demo
+	$(venv) -m pip install -q "$$(echo build/wheel/*.whl)[docs]"
 	touch $@
 
 .venv/.lint: .venv/.test
