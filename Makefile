@@ -23,7 +23,7 @@ with_mitsuba = DRJIT_LIBLLVM_PATH=$$(ls /usr/lib/*/libLLVM.so.19* 2>/dev/null | 
 
 help:
 	@echo "make demo      renders pictures to a stated tolerance into out/"
-	@echo "make test      builds everything, runs the C and the Python tests"
+	@echo "make test      builds everything, runs the C and the Python tests, builds the site"
 	@echo "make sanitize  runs the C tests under AddressSanitizer with UBSan, then ThreadSanitizer"
 	@echo "make lint      ruff, mypy --strict, warnings as errors, clang-format"
 	@echo "make docs      builds the site into build/site/, which needs no network to be read"
@@ -38,6 +38,7 @@ demo: packages-demo .venv/.demo
 test: packages-test build-c .venv/.test
 	ctest --test-dir build --output-on-failure
 	$(venv) -m pytest
+	@$(MAKE) --no-print-directory docs
 
 sanitize: packages-test
 	for kind in address,undefined thread; do \

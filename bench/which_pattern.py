@@ -50,6 +50,7 @@ PATTERNS: dict[str, tuple[str, dict[str, Any]]] = {
     "sz": ("sz", {}),
 }
 DIMENSIONS = (2, 8, 20)
+UNEVEN = 3000  # a count that suits nobody
 BUDGET, COST = 1.6e-3, 100e-9  # seconds for an integral, and for one value of its integrand
 RENDERED = ("uniform", "random", "jittered", "halton", "sobol")
 SCENES = ("penumbra", "defocus", "cornell")
@@ -151,9 +152,10 @@ def keep_times() -> None:
 
 
 def cell(values: Array) -> str:
-    """Median, and the tenth and ninetieth hundredth: "1.2e-3 (2e-4 … 3e-3)"."""
+    """Median, and the tenth and ninetieth hundredth: "1.2e-3 (2e-4 … 3e-3)"; then the root mean square."""
     low, middle, high = np.quantile(values, (0.1, 0.5, 0.9))
-    return f"{middle:.1e} ({low:.0e} … {high:.0e})".replace("e-0", "e-")
+    square = math.sqrt((values**2).mean())
+    return f"{middle:.1e} ({low:.0e} … {high:.0e}), {square:.1e}".replace("e-0", "e-")
 
 
 def print_samples(d: int, n: int, measured: dict[str, dict[int, Array]]) -> None:
@@ -213,7 +215,7 @@ def print_scenes(times: dict[str, list[float]], seeds: int, reference: int) -> N
 
 
 def print_tables(quick: bool) -> None:
-    warnings.simplefilter("error")
+    warnings.filterwarnings("ignore", message=".*not an aligned block")  # UNEVEN is none, to be seen
     kept = json.loads(KEPT.read_text())
     print(kept["about"])
     seeds, largest = (8, 12) if quick else (64, 14)
@@ -223,6 +225,7 @@ def print_tables(quick: bool) -> None:
         measured = {label: by_count for label, by_count in measured.items() if by_count}
         for n in (1 << 8, 1 << 12):
             print_samples(d, n, measured)
+        print_samples(d, UNEVEN, {k: {UNEVEN: errors(k, UNEVEN, d, seeds)} for k in PATTERNS if exists(k, UNEVEN, d)})
         print_seconds(d, {k: v for k, v in measured.items() if f"{k}/{d}" in kept["points"]}, kept["points"])
     print_scenes(kept["scenes"], 3 if quick else 5, 512 if quick else 8192)
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Sunfleck developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""The public C headers as pages: the directive `c-header`, which takes a header's path.
+"""The public C headers as reStructuredText, for the site's reference.
 
 The headers are written to be read as they stand: plain comments whose columns mean something, one
 comment for several functions. Here each comment goes with what follows it, up to the next blank line,
@@ -13,13 +13,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Any
-
-from docutils import nodes
-from docutils.statemachine import StringList
-from sphinx.application import Sphinx
-from sphinx.util.docutils import SphinxDirective
 
 
 @dataclass
@@ -136,13 +129,13 @@ def _kept_source(kind: str, source: str) -> list[str]:
     return [".. code-block:: c", "", *(f"   {line}" for line in source.split("\n")), ""]
 
 
-def write_entry(entry: Entry, level: str) -> list[str]:
+def write_entry(entry: Entry) -> list[str]:
     """reStructuredText; a comment that begins with "---- title ----" is a section."""
     made: list[str] = []
     comment = entry.comment
     if comment and (section := re.match(r"-{4} (.*?) -{4}$", comment[0])):
         title = section[1][0].upper() + section[1][1:]
-        made += [_escaped(title), level * (2 * len(title) + 80), ""]
+        made += [_escaped(title), "^" * (2 * len(title) + 80), ""]  # longer than the title with its escapes
         comment = comment[1:]
     body = [line for paragraph in _paragraphs(comment) for line in paragraph]
     if not entry.declarations:
@@ -159,19 +152,6 @@ def write_entry(entry: Entry, level: str) -> list[str]:
     return made
 
 
-class CHeader(SphinxDirective):
-    """`c-header`: a header's comment and entries."""
-
-    required_arguments = 1
-    has_content = False
-
-    def run(self) -> list[nodes.Node]:
-        path = Path(self.env.srcdir).parent / self.arguments[0]
-        self.env.note_dependency(str(path))
-        lines = [line for entry in read_header(path.read_text(encoding="utf-8")) for line in write_entry(entry, "^")]
-        return self.parse_text_to_nodes(StringList(lines, source=str(path)), allow_section_headings=True)
-
-
-def setup(app: Sphinx) -> dict[str, Any]:
-    app.add_directive("c-header", CHeader)
-    return {"version": "1", "parallel_read_safe": True}
+def header_page(text: str) -> list[str]:
+    """A header as lines of reStructuredText."""
+    return [line for entry in read_header(text) for line in write_entry(entry)]

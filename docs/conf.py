@@ -29,13 +29,18 @@ ROOT = DOCS.parent
 HEADERS = ROOT / "csrc/include/sunfleck"
 sys.path.insert(0, str(DOCS))
 
+from c_headers import header_page  # noqa: E402
+from docutils import nodes  # noqa: E402
+from docutils.statemachine import StringList  # noqa: E402
+from sphinx.util.docutils import SphinxDirective  # noqa: E402
+
 import sunfleck as sf  # noqa: E402
 from sunfleck import cli  # noqa: E402
 
 project, author, copyright = "Sunfleck", "The Sunfleck developers", "2026 The Sunfleck developers"
 version = release = sf.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "c_headers"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 exclude_patterns = ["README.md"]  # the table of pages, for those who read them in the repository
 myst_heading_anchors = 3
 default_role = "py:obj"
@@ -99,21 +104,22 @@ def first_line(thing: Any) -> str:
 
 def table(name: str, rows: dict[str, str]) -> list[str]:
     """A dictionary of names and lines about them."""
-    made = [f".. py:data:: sunfleck.{name}", "", "   .. list-table::", "      :widths: 25 75", ""]
+    made = [f".. py:data:: {name}", "", "   .. list-table::", "      :widths: 25 75", ""]
     for key, line in rows.items():
         made += [f"      * - ``{key}``", "        - " + re.sub(r"([\\*`_|])", r"\\\1", line)]
     return [*made, ""]
 
 
 def python_page(module: str, names: list[tuple[str, Any]]) -> str:
-    lines = titled(module) + [f".. automodule:: sunfleck.{module}", "   :no-members:", "   :no-index:", ""]
+    lines = titled(f"{module} in Python")
+    lines += [f".. automodule:: sunfleck.{module}", "   :no-members:", "   :no-index:", ""]
     for full, thing in names:
         place, _, name = f"sunfleck.{full}".rpartition(".")
         lines += [f".. currentmodule:: {place}", ""]
         if isinstance(thing, type):
             lines += [f".. autoclass:: {name}", ""]
         elif isinstance(thing, dict):
-            lines += table(full, {key: first_line(value) for key, value in thing.items()})
+            lines += table(name, {key: first_line(value) for key, value in thing.items()})
         elif callable(thing):
             lines += [f".. autofunction:: {name}", ""]
         elif not isinstance(thing, sf.mapping.Mapping):  # those are in the table of MAPPINGS
@@ -123,9 +129,9 @@ def python_page(module: str, names: list[tuple[str, Any]]) -> str:
 
 def c_page(header: Path) -> str:
     parts = [header, *sorted(HEADERS.glob(f"{header.stem}_*.h"))]
-    lines = titled(header.stem)
+    lines = titled(f"{header.stem} in C")
     for part in parts:
-        lines += titled(f"sunfleck/{part.name}", "-") + [f".. c-header:: {part.relative_to(ROOT)}", ""]
+        lines += [*titled(f"sunfleck/{part.name}", "-"), f".. c-header:: {part.relative_to(ROOT)}", ""]
     return write(f"c/{header.stem}", lines)
 
 
@@ -153,17 +159,13 @@ def cli_help() -> dict[str, str]:
 
 
 def reference_pages() -> dict[str, list[str]]:
-    headers = [
-        h
-        for h in sorted(HEADERS.glob("*.h"))
-        if h.stem not in ("sunfleck", "lanczos_table")  # the umbrella, and a table that is generated
-        and not (
-            HEADERS / f"{h.stem.partition('_')[0]}.h" != h and (HEADERS / f"{h.stem.partition('_')[0]}.h").exists()
-        )
-    ]
+    """Pages by caption; mapping_plane.h and its like are on the page of mapping.h."""
+    names = {header.stem for header in HEADERS.glob("*.h")}
+    names -= {"sunfleck", "lanczos_table"}  # the umbrella, and a table that is generated
+    own = sorted(name for name in names if not any(name.startswith(f"{other}_") for other in names))
     return {
-        "Python reference": [python_page(module, names) for module, names in public_names().items()],
-        "C reference": [c_page(header) for header in headers],
+        "Python reference": [python_page(module, things) for module, things in public_names().items()],
+        "C reference": [c_page(HEADERS / f"{name}.h") for name in own],
     }
 
 
@@ -189,7 +191,8 @@ def prose_pages() -> dict[str, list[str]]:
 
 
 def toctree(caption: str, pages: list[str]) -> str:
-    listed = "\n".join(pages)
+    """Pages of the reference are listed by their module alone."""
+    listed = "\n".join(f"{page.rpartition('/')[2]} <{page}>" if page.count("/") == 2 else page for page in pages)
     return f"```{{toctree}}\n:hidden:\n:caption: {caption}\n:maxdepth: 1\n\n{listed}\n```\n" if pages else ""
 
 
@@ -241,7 +244,20 @@ def always_read(app: Any, env: Any, added: set[str], changed: set[str], removed:
     return ["index"]
 
 
+class CHeader(SphinxDirective):
+    """`c-header`: what a header says; takes its path in the repository."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        path = ROOT / self.arguments[0]
+        self.env.note_dependency(str(path))
+        lines = StringList(header_page(path.read_text(encoding="utf-8")), source=str(path))
+        return self.parse_text_to_nodes(lines, allow_section_headings=True)
+
+
 def setup(app: Any) -> None:
+    app.add_directive("c-header", CHeader)
     app.connect("env-get-outdated", always_read)
     app.connect("source-read", read_page)
     app.connect("autodoc-process-docstring", plain_docstring, priority=400)  # before napoleon
