@@ -122,11 +122,12 @@ def _remark(signature: str, source: str) -> list[str]:
     return [f"``{name[1]}``: {_escaped(' '.join(found[1].split()))}", ""] if found and name else []
 
 
-def _kept_source(kind: str, source: str) -> list[str]:
+def _kept_source(kind: str, sources: list[str]) -> list[str]:
     """The source of what is its own best description: structs, enums and macros with a value."""
-    if kind == "function" or (kind == "var" and len(source) > 200):
+    lines = "\n".join(sources).split("\n")
+    if kind == "function" or (kind == "var" and len(lines) > 3):
         return []
-    return [".. code-block:: c", "", *(f"   {line}" for line in source.split("\n")), ""]
+    return [".. code-block:: c", "", *(f"   {line}" for line in lines), ""]
 
 
 def write_entry(entry: Entry) -> list[str]:
@@ -146,7 +147,7 @@ def write_entry(entry: Entry) -> list[str]:
         head = f".. c:{kind}:: "
         made += [(" " * len(head) if k else head) + signature for k, (_, signature, _) in enumerate(same)] + [""]
         remarks = [line for _, signature, source in same for line in _remark(signature, source) if kind == "function"]
-        content = body + remarks + [line for _, _, source in same for line in _kept_source(kind, source)]
+        content = body + remarks + _kept_source(kind, [source for _, _, source in same])
         made += [f"   {line}" if line else "" for line in content] + [""]
         body = []
     return made

@@ -32,6 +32,7 @@ sys.path.insert(0, str(DOCS))
 from c_headers import header_page  # noqa: E402
 from docutils import nodes  # noqa: E402
 from docutils.statemachine import StringList  # noqa: E402
+from sphinx.pycode import ModuleAnalyzer  # noqa: E402
 from sphinx.util.docutils import SphinxDirective  # noqa: E402
 
 import sunfleck as sf  # noqa: E402
@@ -102,11 +103,15 @@ def first_line(thing: Any) -> str:
     return thing if isinstance(thing, str) else (thing.__doc__ or "").partition("\n")[0]
 
 
-def table(name: str, rows: dict[str, str]) -> list[str]:
-    """A dictionary of names and lines about them."""
-    made = [f".. py:data:: {name}", "", "   .. list-table::", "      :widths: 25 75", ""]
-    for key, line in rows.items():
-        made += [f"      * - ``{key}``", "        - " + re.sub(r"([\\*`_|])", r"\\\1", line)]
+def constant(module: str, name: str, thing: Any) -> list[str]:
+    """What the module's source says beneath it; a dictionary as a table of names and lines about them."""
+    said = ModuleAnalyzer.for_module(f"sunfleck.{module}").find_attr_docs().get(("", name), [])
+    made = [f".. py:data:: {name}", "", *(f"   {line}" for line in said), ""]
+    if not isinstance(thing, dict):
+        return [*made, "   .. code-block:: python", "", f"      {thing!r}", ""]
+    made += ["   .. list-table::", "      :widths: 25 75", ""]
+    for key, line in thing.items():
+        made += [f"      * - ``{key}``", "        - " + re.sub(r"([\\*`_|])", r"\\\1", first_line(line))]
     return [*made, ""]
 
 
@@ -118,12 +123,12 @@ def python_page(module: str, names: list[tuple[str, Any]]) -> str:
         lines += [f".. currentmodule:: {place}", ""]
         if isinstance(thing, type):
             lines += [f".. autoclass:: {name}", ""]
-        elif isinstance(thing, dict):
-            lines += table(name, {key: first_line(value) for key, value in thing.items()})
+        elif isinstance(thing, sf.mapping.Mapping):
+            continue  # all are in the table of MAPPINGS
         elif callable(thing):
             lines += [f".. autofunction:: {name}", ""]
-        elif not isinstance(thing, sf.mapping.Mapping):  # those are in the table of MAPPINGS
-            lines += [f".. autodata:: {name}", ""]
+        else:
+            lines += constant(module, name, thing)
     return write(f"python/{module}", lines)
 
 
