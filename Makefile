@@ -57,6 +57,7 @@ lint: packages-test .venv/.lint
 	scripts/check-format.sh
 
 docs: packages-demo .venv/.docs
+	rm -rf build/site build/site-read docs/reference
 	$(venv) -m sphinx -W --keep-going -q -b html -d build/site-read docs build/site
 	@echo "build/site/index.html"
 

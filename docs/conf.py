@@ -176,7 +176,8 @@ def reference_pages() -> dict[str, list[str]]:
 
 REFERENCE = reference_pages()
 ELSEWHERE = [command_line_page()] + [
-    write(page.lower(), [f"```{{include}} ../../{page}.md", "```"], ".md") for page in ("CONTRIBUTING", "CHANGELOG")
+    write(page, [f"# {page}"], ".md")  # in whose place read_page puts the file
+    for page in ("CONTRIBUTING", "CHANGELOG")
 ]
 
 # ---- the front page, and what is in the margin ----
@@ -201,14 +202,19 @@ def toctree(caption: str, pages: list[str]) -> str:
     return f"```{{toctree}}\n:hidden:\n:caption: {caption}\n:maxdepth: 1\n\n{listed}\n```\n" if pages else ""
 
 
+def top_page(name: str) -> str:
+    """A page of the repository's top, its links as docs/ and docs/reference/ have them."""
+    text = (ROOT / f"{name}.md").read_text(encoding="utf-8")
+    text = re.sub(r"\]\((?![a-z]+:|#|docs/|(?:CONTRIBUTING|CHANGELOG)\.md)", "](/../", text)
+    text = re.sub(r"\]\((?=CONTRIBUTING|CHANGELOG)", "](/reference/", text)
+    return text.replace("](docs/README.md)", "](/index.md)").replace("](docs/", "](/")
+
+
 def front_page() -> str:
-    """The project's README, its links seen from here, and the tables of contents."""
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    """The project's README and the tables of contents."""
+    text = top_page("README").replace("](/index.md)", "](#modules)")
     pictures, _, rest = text.partition("\n# ")
     text = f"# {rest.replace(chr(10), chr(10) * 2 + pictures + chr(10), 1)}"
-    text = text.replace("](docs/README.md)", "](#modules)").replace("](docs/", "](")
-    text = re.sub(r"\]\((CONTRIBUTING|CHANGELOG)\.md\)", lambda m: f"](reference/{m[1].lower()}.md)", text)
-    text = re.sub(r"\]\((?=[A-Z][\w.]*\)|examples/|bench/)", "](../", text)
     prose = prose_pages()
     modules = "\n".join(f"- [{page}]({page}.md)" for page in prose["Modules"])
     contents = [toctree(caption, pages) for caption, pages in {**prose, **REFERENCE}.items()]
@@ -230,6 +236,8 @@ def reference_of(page: str) -> str:
 def read_page(app: Any, name: str, source: list[str]) -> None:
     if name == "index":
         source[0] = front_page()
+    elif name in ELSEWHERE[1:]:
+        source[0] = top_page(name.rpartition("/")[2])
     elif "/" not in name:
         source[0] += reference_of(name)
 
@@ -245,8 +253,8 @@ def plain_docstring(app: Any, what: str, name: str, thing: Any, options: Any, li
 
 
 def always_read(app: Any, env: Any, added: set[str], changed: set[str], removed: set[str]) -> list[str]:
-    """The front page, whose source is elsewhere."""
-    return ["index"]
+    """Pages whose source is elsewhere."""
+    return ["index", *ELSEWHERE[1:]]
 
 
 class CHeader(SphinxDirective):
