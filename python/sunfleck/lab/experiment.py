@@ -47,9 +47,10 @@ class Experiment:
     holds: tuple[float, float]
     measure: Callable[[int], Measured]
 
-    def run(self, seed: int = 1) -> Measured:
-        """Measures both sides; a pure function of ``seed``."""
-        return self.measure(seed)
+    def holds_for(self, measured: Measured) -> bool:
+        """Whether both numbers lie within their intervals."""
+        sides = ((self.fails, measured.before), (self.holds, measured.after))
+        return all(low <= number <= high for (low, high), number in sides)
 
     def report(self, measured: Measured) -> str:
         """The lines that ``sunfleck lab NAME`` prints."""

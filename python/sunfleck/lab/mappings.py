@@ -37,14 +37,14 @@ def _log_zero(seed: int) -> Measured:
     return Measured(infinite(failing), infinite(right), show[0], show[1])
 
 
-def _leaves(failing: str, remedied: str) -> Callable[[int], Measured]:
-    def outside(name: str, seed: int) -> tuple[float, Panel]:
-        p = np.asarray(getattr(sf.mapping, name).sample(_square(seed)))
+def _leaves(failing: str, remedied: str, **options: float) -> Callable[[int], Measured]:
+    def outside(name: str, seed: int, **options: float) -> tuple[float, Panel]:
+        p = np.asarray(getattr(sf.mapping, name).sample(_square(seed), **options))
         return float(np.mean(((p < 0) | (p > 1)).any(axis=1))), scatter(p[:2000], "x", "y")
 
     def measure(seed: int) -> Measured:
         before, left = outside(failing, seed)
-        after, right = outside(remedied, seed)
+        after, right = outside(remedied, seed, **options)
         return Measured(before, after, left, right)
 
     return measure
@@ -120,10 +120,10 @@ EXPERIMENTS = (
         "Samples stay in their pixel.",
         "A normal position is unbounded.",
         "share of positions outside the pixel, mu 0.4",
-        "Truncate and renormalize: pixel_gaussian_truncated.",
+        "Truncate and renormalize: pixel_gaussian_truncated within half a pixel.",
         (0.3, 0.5),
         (0, 0),
-        _leaves("pixel_gaussian", "pixel_gaussian_truncated"),
+        _leaves("pixel_gaussian", "pixel_gaussian_truncated", radius=0.5),
     ),
     Experiment(
         "tent-leaves",
