@@ -37,7 +37,7 @@ def add_lab(commands: argparse._SubParsersAction[Any]) -> None:
     parser = commands.add_parser(
         "lab",
         help="show where methods fail, and what helps",
-        description="Show where methods fail: each experiment has a claim, where it breaks, a number, and the remedy's.",
+        description="Show where methods fail: a claim, where it breaks, a number, the remedy and its number.",
         epilog=_EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

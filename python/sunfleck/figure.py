@@ -129,7 +129,8 @@ def _draw_bars(ax: Any, series: Series, color: str) -> None:
     at = np.asarray(series.x, dtype=float)
     drawn = ax.bar(at, series.y, width=0.6, color=color, label=series.name)
     ax.bar_label(drawn, fmt="%.4g", fontsize=7, padding=1)
-    ax.set_xticks(at, series.labels or [f"{x:g}" for x in at])
+    if not np.any(series.y):
+        ax.set_ylim(0, 1)
 
 
 def _draw_image(ax: Any, image: ArrayLike) -> None:
@@ -153,6 +154,9 @@ def _draw(ax: Any, panel: Panel, names: dict[str, int]) -> None:
     ax.set(title=panel.title, xlabel=panel.x, ylabel=panel.y)
     ax.set_xscale("log" if panel.x_log else "linear")
     ax.set_yscale("log" if panel.y_log else "linear")
+    for series in panel.series:
+        if series.bars and series.labels:
+            ax.set_xticks(np.asarray(series.x, dtype=float), series.labels)  # after the scale, which resets them
     ax.title.set_fontsize(9)
     if panel.image is None:
         ax.grid(alpha=0.25, linewidth=0.5)

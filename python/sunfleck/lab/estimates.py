@@ -27,8 +27,10 @@ def _sums(mean: float, dtype: str) -> Callable[[int], Measured]:
         welford.add(x)
         exact = float(np.var(x - mean))
         failed, right = abs(running.variance / exact - 1), abs(welford.variance / exact - 1)
-        panels = [bars({"exact": exact, name: v}, "variance") for name, v in
-                  (("running sums", running.variance), ("Moments", welford.variance))]
+        panels = [
+            bars({"exact": exact, name: v}, "variance")
+            for name, v in (("running sums", running.variance), ("Moments", welford.variance))
+        ]
         return Measured(failed, right, panels[0], panels[1])
 
     return measure
@@ -61,8 +63,9 @@ def _qmc_error(seed: int) -> Measured:
     truth = float(np.sqrt(np.mean((means - 0.75) ** 2)))
     told = float(np.sqrt(np.mean(groups.var(axis=1, ddof=1))))
     naive = float(np.mean(widths))
-    panels = [bars({"true RMS error": truth, name: v}, "error") for name, v in
-              (("s / sqrt(n)", naive), ("replicates", told))]
+    panels = [
+        bars({"true RMS error": truth, name: v}, "error") for name, v in (("s / sqrt(n)", naive), ("replicates", told))
+    ]
     return Measured(naive / truth, told / truth, panels[0], panels[1])
 
 

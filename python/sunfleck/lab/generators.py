@@ -9,7 +9,7 @@ import numpy as np
 
 import sunfleck as sf
 from sunfleck.figure import Panel
-from sunfleck.lab.experiment import Array, Experiment, Measured, bars, image, lines, scatter
+from sunfleck.lab.experiment import Array, Experiment, Measured, image, lines, scatter
 
 __all__ = ["EXPERIMENTS"]
 
@@ -160,9 +160,10 @@ def _rand_coarse(seed: int) -> Measured:
         x = (1103515245 * x + 12345) & 0xFFFFFFFF
         words[i] = x // 65536 % 32768
     fine = _bits("pcg32", seed, n)
-    counts = {"the standard's rand()": float(len(np.unique(words))), "pcg32": float(len(np.unique(fine)))}
-    panel = bars(counts, "distinct values")
-    return Measured(*counts.values(), scatter(words[:4000].reshape(-1, 2) / 32768), panel)
+    unit = [words / 2.0**15, fine / 2.0**32]
+    low = [np.nonzero(u < 2.0**-10)[0] for u in unit]  # 32 values of the coarse one
+    show = [scatter(np.stack([at, u[at]], 1), "draw", "those below 1/1024") for at, u in zip(low, unit, strict=True)]
+    return Measured(float(len(np.unique(words))), float(len(np.unique(fine))), show[0], show[1])
 
 
 def _overflow(seed: int) -> Measured:

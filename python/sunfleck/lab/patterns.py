@@ -70,8 +70,9 @@ def _in_step(seed: int) -> Measured:
     order = np.argsort(np.asarray(sf.Rng("pcg64dxsm", seed=seed).random(n)))
 
     def share(partner: Array) -> tuple[float, Panel]:
-        x, l = pixel[:, 0], partner[:, 0]
-        return float(np.mean(np.abs(x - l) < 0.25)) - 7 / 16, scatter(np.stack([x, l], 1), "pixel x", "lens x")
+        both = np.stack([pixel[:, 0], partner[:, 0]], 1)
+        near = np.abs(both[:, 0] - both[:, 1]) < 0.25
+        return float(np.mean(near)) - 7 / 16, scatter(both, "pixel x", "lens x")
 
     before, failing = share(lens)
     after, remedied = share(lens[order])
@@ -177,10 +178,7 @@ def _duplicates(seed: int) -> Measured:
 def _not_a_power(seed: int, runs: int = 200) -> Measured:
     counts = np.array([1024, 1280, 1536, 1792, 2048])
     errors = np.array(
-        [
-            _rms(_smooth, 1.0, [_points("sobol", int(n), seed=seed * runs + k) for k in range(runs)])
-            for n in counts
-        ]
+        [_rms(_smooth, 1.0, [_points("sobol", int(n), seed=seed * runs + k) for k in range(runs)]) for n in counts]
     )
     shown = lines({"sobol": (counts, errors)}, "samples", "RMS error", log=True)
     kept = lines({"sobol": (counts[::4], errors[::4])}, "samples", "RMS error", log=True)

@@ -20,7 +20,7 @@ ONE_SIGMA = 0.6826894921370859  # erf(2^-1/2)
 
 
 def _grey(made: sf.Image) -> Array:
-    return np.asarray(made.color, dtype=np.float64).mean(axis=2)
+    return np.asarray(np.mean(made.color, axis=2, dtype=np.float64))
 
 
 @functools.cache
@@ -76,7 +76,9 @@ def _plain() -> sf.Scene:
     square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], dtype=np.float32)
     faces = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.uint32)
     floor = sf.Mesh(square * 4, faces)
-    lamp = sf.Mesh(square + np.float32([0, 0, 1]), faces[:, ::-1].copy(), albedo=(0, 0, 0), emission=(1, 1, 1))
+    lamp = sf.Mesh(
+        square + np.array([0, 0, 1], dtype=np.float32), faces[:, ::-1].copy(), albedo=(0, 0, 0), emission=(1, 1, 1)
+    )
     return sf.Scene([floor, lamp], sf.Camera((0, 0, 0.9), (0, 0, 0), up=(0, 1, 0), vertical_fov=2.0), max_bounces=1)
 
 
@@ -85,9 +87,7 @@ def _shared(seed: int) -> Measured:
         # A tile for each thread: rendered one after the other, so that it is known who draws what.
         tiles = [(0, 0, 16, 16), (16, 0, 32, 16)]
         made = [
-            _grey(
-                sf.render(_plain(), 32, 16, spp=2, pattern="random", seeds=seeds, seed=seed, threads=1, crop=tile)
-            )
+            _grey(sf.render(_plain(), 32, 16, spp=2, pattern="random", seeds=seeds, seed=seed, threads=1, crop=tile))
             for tile in tiles
         ]
         pairs = np.stack([(m - m.mean()).ravel() for m in made], axis=1)
@@ -101,7 +101,7 @@ def _shared(seed: int) -> Measured:
 
 def _degenerate(_seed: int) -> Measured:
     good = np.array([[0, 0, 2], [1, 0, 2], [0, 1, 2]], dtype=np.float32)
-    bad = {"no area": good * np.float32([1, 0, 1]), "NaN": good.copy(), "infinite": good.copy()}
+    bad = {"no area": good * np.array([1, 0, 1], dtype=np.float32), "NaN": good.copy(), "infinite": good.copy()}
     bad["NaN"][1, 1], bad["infinite"][2, 0] = np.nan, np.inf
     naive, ours = {}, {}
     for name, vertices in bad.items():

@@ -9,8 +9,8 @@ import dataclasses
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from sunfleck._files import FilePath
-from sunfleck.figure import Figure, draw_panels
+from sunfleck._files import FilePath, replacing
+from sunfleck.figure import FIGURE_TYPES, Figure, draw_panels
 from sunfleck.lab.experiment import Experiment, Measured
 from sunfleck.page import Page
 from sunfleck.provenance import provenance
@@ -94,13 +94,15 @@ def write_all(folder: FilePath, results: Iterable[Result], done: Callable[[Resul
     target.mkdir(parents=True, exist_ok=True)
     kept = []
     for result in results:
-        figure = draw(result)
-        figure.save(target / f"{result.experiment.name}.png")
-        kept.append((result, figure.png()))
+        kept.append((result, draw(result).png()))
+        with replacing(target / f"{result.experiment.name}.png", "figures", FIGURE_TYPES) as path:
+            path.write_bytes(kept[-1][1])
         if done:
             done(result)
     page = Page("Where methods fail", provenance([kept[0][0].seed]))
-    page.text("Each experiment states a claim, where it breaks, a number measured there, a remedy and the number after it.")
+    page.text(
+        "Each experiment states a claim, where it breaks, a number measured there, a remedy and the number after it."
+    )
     for result, data in kept:
         page.heading(result.experiment.name)
         page.pictures({result.experiment.line: data})

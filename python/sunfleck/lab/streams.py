@@ -69,7 +69,8 @@ def _modulo(seed: int) -> Measured:
         return float(np.mean(faces < 1 << 14))
 
     show = [
-        bars({f"third {k + 1}": float(np.mean(faces >> 14 == k)) for k in range(3)}, "share") for faces in (folded, kept)
+        bars({f"third {k + 1}": float(np.mean(faces >> 14 == k)) for k in range(3)}, "share")
+        for faces in (folded, kept)
     ]
     return Measured(low(folded), low(kept), show[0], show[1])
 
