@@ -45,16 +45,17 @@ from sunfleck.sky import Environment, Sun
 from sunfleck.tolerance import Tolerance
 
 if TYPE_CHECKING:
+    from sunfleck import lab as lab
     from sunfleck import qmc as qmc
 else:
 
     def __getattr__(name: str) -> Any:
-        """`sunfleck.qmc`, which needs SciPy, when it is first asked for."""
-        if name != "qmc":
+        """`sunfleck.qmc`, which needs SciPy, and `sunfleck.lab` when they are first asked for."""
+        if name not in ("lab", "qmc"):
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         import importlib
 
-        return importlib.import_module("sunfleck.qmc")
+        return importlib.import_module(f"sunfleck.{name}")
 
 
 __version__ = _version()

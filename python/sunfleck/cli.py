@@ -21,6 +21,7 @@ import sunfleck as sf
 from sunfleck import _core
 from sunfleck._files import replacing, writable_target
 from sunfleck.cli_gallery import add_gallery
+from sunfleck.cli_lab import add_lab
 from sunfleck.figure import FIGURE_TYPES, require_matplotlib
 from sunfleck.heatmap import HEATMAPS
 from sunfleck.image import IMAGE_TYPES, RADIANCE_TYPES, read_radiance
@@ -175,7 +176,7 @@ def _parser() -> _Parser:
         prog="sunfleck",
         description="Random numbers into pictures of stated accuracy.",
         epilog="examples:\n  sunfleck render -o out.exr\n  sunfleck points sobol -n 16\n  sunfleck plan cornell\n"
-        "  sunfleck gallery -o gallery\n\n"
+        "  sunfleck gallery -o gallery\n  sunfleck lab --list\n\n"
         "Each command has its own --help.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -186,6 +187,7 @@ def _parser() -> _Parser:
     _add_points(commands)
     _add_plan(commands)
     add_gallery(commands)
+    add_lab(commands)
     return parser
 
 

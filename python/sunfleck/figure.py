@@ -41,7 +41,7 @@ _MARKERS = "os^Dv*PX"
 
 @dataclass
 class Series:
-    """Points with one name; `low` and `high` are the ends of their spread."""
+    """Points with one name; `low` and `high` are the ends of their spread. Bars have `labels` below them."""
 
     name: str
     x: ArrayLike
@@ -50,11 +50,13 @@ class Series:
     high: ArrayLike | None = None
     line: bool = True
     labels: Sequence[str] | None = None
+    bars: bool = False
+    marker_size: float = 4.0
 
 
 @dataclass
 class Panel:
-    """One pair of axes and what is drawn on it."""
+    """One pair of axes and what is drawn on it; `image`, shape (rows, columns), lies below."""
 
     title: str
     x: str
@@ -63,6 +65,7 @@ class Panel:
     x_log: bool = True
     y_log: bool = True
     note: str = ""
+    image: ArrayLike | None = None
 
 
 def _pyplot() -> Any:
@@ -115,14 +118,33 @@ def _style(series: Series, number: int) -> dict[str, Any]:
     return {
         "color": COLORS[number % len(COLORS)],
         "marker": _MARKERS[number % len(_MARKERS)],
-        "markersize": 4,
+        "markersize": series.marker_size,
+        "markeredgewidth": min(1.0, series.marker_size / 4),
         "linestyle": "-" if series.line else "none",
         "linewidth": 1.3,
     }
 
 
+def _draw_bars(ax: Any, series: Series, color: str) -> None:
+    at = np.asarray(series.x, dtype=float)
+    drawn = ax.bar(at, series.y, width=0.6, color=color, label=series.name)
+    ax.bar_label(drawn, fmt="%.4g", fontsize=7, padding=1)
+    if not np.any(series.y):
+        ax.set_ylim(0, 1)
+
+
+def _draw_image(ax: Any, image: ArrayLike) -> None:
+    drawn = ax.imshow(image, cmap="cividis", interpolation="nearest", aspect="auto")
+    ax.figure.colorbar(drawn, ax=ax, shrink=0.8).ax.tick_params(labelsize=6)
+
+
 def _draw(ax: Any, panel: Panel, names: dict[str, int]) -> None:
+    if panel.image is not None:
+        _draw_image(ax, panel.image)
     for series in panel.series:
+        if series.bars:
+            _draw_bars(ax, series, COLORS[names.setdefault(series.name, len(names)) % len(COLORS)])
+            continue
         style = _style(series, names.setdefault(series.name, len(names)))
         ax.plot(series.x, series.y, label=series.name, **style)
         if series.low is not None and series.high is not None:
@@ -132,8 +154,12 @@ def _draw(ax: Any, panel: Panel, names: dict[str, int]) -> None:
     ax.set(title=panel.title, xlabel=panel.x, ylabel=panel.y)
     ax.set_xscale("log" if panel.x_log else "linear")
     ax.set_yscale("log" if panel.y_log else "linear")
+    for series in panel.series:
+        if series.bars and series.labels:
+            ax.set_xticks(np.asarray(series.x, dtype=float), series.labels)  # after the scale, which resets them
     ax.title.set_fontsize(9)
-    ax.grid(alpha=0.25, linewidth=0.5)
+    if panel.image is None:
+        ax.grid(alpha=0.25, linewidth=0.5)
     ax.tick_params(labelsize=7)
     if panel.note:
         ax.text(0.02, 0.02, panel.note, transform=ax.transAxes, fontsize=6, va="bottom", family="monospace")
