@@ -5,7 +5,8 @@
 
 A square light of side 2 at several heights above a floor, half of it as a triangle, the Cornell box
 under a light as large as its ceiling, and the built-in scenes; 64 samples a pixel, 96 x 96, direct
-light (keyhole and cornell: 5 bounces). relMSE against 8,192 samples a pixel; the ways take turns, medians over the seeds.
+light (keyhole and cornell: 5 bounces). relMSE against 8,192 samples a pixel; the ways take turns,
+medians over the seeds.
 Writes docs/images/area-lights.png.
 """
 
