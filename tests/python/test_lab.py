@@ -12,7 +12,9 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -111,7 +113,9 @@ def test_the_command_refuses(arguments: list[str], told: str, capsys: pytest.Cap
     assert told in capsys.readouterr().err
 
 
-def test_the_page_holds_all_and_loads_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_page_holds_all_and_loads_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], open_page: Callable[[Path], Any]
+) -> None:
     assert main(["lab", "--all", "-o", str(tmp_path / "lab")]) == 0
     assert capsys.readouterr().out.strip() == str(tmp_path / "lab" / "index.html")
     page = (tmp_path / "lab" / "index.html").read_text(encoding="utf-8")
@@ -120,6 +124,9 @@ def test_the_page_holds_all_and_loads_nothing(tmp_path: Path, capsys: pytest.Cap
         assert f'id="{name}"' in page
         assert (tmp_path / "lab" / f"{name}.png").read_bytes()[1:4] == b"PNG"
     assert page.count("data:image/png;base64,") == len(NAMES)
+    browser = open_page(tmp_path / "lab" / "index.html")
+    browser.find_element("css selector", "figure img").click()
+    assert browser.find_element("id", "zoom").is_displayed()
 
 
 def test_the_docs_name_every_experiment() -> None:
