@@ -13,6 +13,7 @@ cost        samples over those of an oracle that knows every pixel's true varian
 met         share of pixels that met the tolerance before max_spp; the shares above are of these
 bias        mean over seeds of the picture's mean against the truth, in standard errors
 
+"two-stage" is the rule dyadic with the option unbiased; the pilot's samples are not counted here.
 "half-buffer", the usual rule of renderers, is replayed: z times half the difference between the means of
 two halves of the samples, its square averaged over 3 x 3 pixels, decides at the same looks.
 
@@ -116,8 +117,9 @@ class Stopped:
 
 
 def run_rule(scene: sf.Scene, tolerance: float, pattern: str, rule: str, seed: int) -> Stopped:
+    options = {"stop": "dyadic", "unbiased": True} if rule == "two-stage" else {"stop": rule}
     image = sf.render(
-        scene, SIZE, SIZE, tolerance=tolerance, min_spp=FIRST, max_spp=MOST, pattern=pattern, stop=rule, seed=seed
+        scene, SIZE, SIZE, tolerance=tolerance, min_spp=FIRST, max_spp=MOST, pattern=pattern, seed=seed, **options
     )
     return Stopped(level_of(image), image.half_width, image.samples, image.stop_reason == MET)
 
