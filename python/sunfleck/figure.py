@@ -343,7 +343,8 @@ def plotly_figure(panel: Panel, names: dict[str, int]) -> dict[str, Any]:
     traces: list[dict[str, Any]] = []
     for series in panel.series:
         color = _color(series, names)
-        x, y = (np.asarray(v, dtype=float).tolist() for v in (np.atleast_1d(series.x), np.atleast_1d(series.y)))
+        x, y = (np.atleast_1d(np.asarray(v, dtype=float)).tolist() for v in (series.x, series.y))
+        y = [v if np.isfinite(v) else None for v in y]  # JSON knows no NaN
         trace: dict[str, Any] = {"type": "scatter", "x": x, "y": y, "name": series.label or series.name}
         trace["line"] = {"color": color, "dash": "dash" if series.style == "guide" else "solid"}
         trace["mode"] = "lines" if series.style == "guide" else "lines+markers" if series.line else "markers"
@@ -352,8 +353,9 @@ def plotly_figure(panel: Panel, names: dict[str, int]) -> dict[str, Any]:
         if series.labels:
             trace["text"] = list(series.labels)
         if series.low is not None and series.high is not None:
-            up, down = np.asarray(series.high, float) - y, np.asarray(y) - np.asarray(series.low, float)
-            trace["error_y"] = {"type": "data", "array": up.tolist(), "arrayminus": down.tolist(), "thickness": 0.8}
+            low, middle, high = (np.nan_to_num(np.asarray(v, float)) for v in (series.low, series.y, series.high))
+            spread = {"array": (high - middle).tolist(), "arrayminus": (middle - low).tolist()}
+            trace["error_y"] = {"type": "data", "thickness": 0.8, **spread}
         traces.append(trace)
     axis = {"x": panel.x_log, "y": panel.y_log}
     layout = {
