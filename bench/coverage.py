@@ -165,7 +165,7 @@ def main() -> None:
     args = parser.parse_args()
 
     print(describe_machine())
-    print(describe_build(Path(sf._core.__file__)))
+    print(describe_build())
     rows = []
     print("scene     pattern  rule             tol   coverage (hard)  within (hard)  cost   met    bias")
     for name in args.scenes:

@@ -13,7 +13,6 @@ import argparse
 import statistics
 import time
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 from measure import describe_build, describe_machine
@@ -70,7 +69,7 @@ def main() -> None:
     parser.add_argument("names", nargs="*", default=list(sf.RNGS))
     args = parser.parse_args()
 
-    print(f"{describe_machine()}; {describe_build(Path(_core.__file__))}; {_core.isa()}; NumPy {np.__version__}")
+    print(f"{describe_machine()}; {describe_build()}; {_core.isa()}; NumPy {np.__version__}")
     out = np.ones(COUNT)
     constant = [1e9 * seconds(lambda: out.fill(0.5)) / COUNT for _ in range(args.runs)]
     print(f"median (least … greatest) of {args.runs} fills of {COUNT} values; a constant fill of float64 takes")

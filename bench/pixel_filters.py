@@ -103,7 +103,7 @@ def main() -> None:
     parser.add_argument("--only", choices=["coverage", "time", "picture"])
     args = parser.parse_args()
     print(describe_machine())
-    print(describe_build(Path(sf._core.__file__)))
+    print(describe_build())
     scene = sf.scenes.penumbra()
     if args.only in (None, "time"):
         for name, taken in times(scene, args.runs).items():

@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import re
 import time
-from pathlib import Path
 from statistics import median
 
 import matplotlib
@@ -67,7 +66,7 @@ def generators() -> list[tuple[str, float, int]]:
 
 def main() -> None:
     print(describe_machine())
-    print(describe_build(Path(sf._core.__file__)))
+    print(describe_build())
     figure, (left, right) = plt.subplots(1, 2, figsize=(12, 5), layout="constrained")
     for name, rate, discrepancy in patterns():
         print(f"{name:16} {rate:6.2f} ns a value   centered discrepancy {discrepancy:.2e}")

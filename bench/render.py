@@ -14,7 +14,6 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -82,7 +81,7 @@ def main() -> None:
 
     with_peer = peer is not None and peer.choose_variant().startswith("llvm")
     print(describe_machine())
-    print(describe_build(Path(sf._core.__file__)))
+    print(describe_build())
     for note in sorted((ROOT / "build/reference").glob("*.txt")):
         print(note.read_text(), end="")
     for name, spp in [("penumbra", 64), ("penumbra", 1024), ("cornell", 64)]:

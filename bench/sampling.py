@@ -16,7 +16,6 @@ import time
 import warnings
 from collections.abc import Callable
 from functools import partial
-from pathlib import Path
 from statistics import median
 from typing import Any
 
@@ -170,9 +169,8 @@ BENCHES = {
 
 def main() -> None:
     warnings.simplefilter("ignore")  # one point of Sobol' is asked for on purpose
-    [extension] = Path(sf.__file__).parent.glob("_core.*.so")
     print(describe_machine())
-    print(describe_build(extension))
+    print(describe_build())
     for name in sys.argv[1:] or BENCHES:
         print(f"\n{name}: {BENCHES[name].__doc__}")
         BENCHES[name]()

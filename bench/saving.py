@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import argparse
 import time
-from pathlib import Path
 
 import numpy as np
 from coverage import SIZE, TOLERANCES, Array, level_of, truth_of
@@ -46,7 +45,7 @@ def main() -> None:
     args = parser.parse_args()
 
     print(describe_machine())
-    print(describe_build(Path(sf._core.__file__)))
+    print(describe_build())
     print("fixed over adaptive       at the same 99 % quantile      at the same relMSE")
     print("scene     tolerance       samples    seconds             samples    seconds")
     for name in args.scenes:

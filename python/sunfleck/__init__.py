@@ -45,13 +45,14 @@ from sunfleck.sky import Environment, Sun
 from sunfleck.tolerance import Tolerance
 
 if TYPE_CHECKING:
+    from sunfleck import chart as chart
     from sunfleck import lab as lab
     from sunfleck import qmc as qmc
 else:
 
     def __getattr__(name: str) -> Any:
-        """`sunfleck.qmc`, which needs SciPy, and `sunfleck.lab` when they are first asked for."""
-        if name not in ("lab", "qmc"):
+        """Modules that need more (qmc needs SciPy, chart matplotlib) or are large, when they are first asked for."""
+        if name not in ("chart", "lab", "qmc"):
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         import importlib
 

@@ -20,12 +20,13 @@ from numpy.typing import NDArray
 import sunfleck as sf
 from sunfleck import _core
 from sunfleck._files import replacing, writable_target
+from sunfleck.cli_chart import add_chart
 from sunfleck.cli_gallery import add_gallery
 from sunfleck.cli_lab import add_lab
 from sunfleck.figure import FIGURE_TYPES, require_matplotlib
 from sunfleck.heatmap import HEATMAPS
 from sunfleck.image import IMAGE_TYPES, RADIANCE_TYPES, read_radiance
-from sunfleck.load import FILE_TYPES, z_is_up
+from sunfleck.load import FILE_TYPES, scene_by_name, z_is_up
 from sunfleck.scenes import SCENES
 
 __all__ = ["main"]
@@ -176,7 +177,7 @@ def _parser() -> _Parser:
         prog="sunfleck",
         description="Random numbers into pictures of stated accuracy.",
         epilog="examples:\n  sunfleck render -o out.exr\n  sunfleck points sobol -n 16\n  sunfleck plan cornell\n"
-        "  sunfleck gallery -o gallery\n  sunfleck lab --list\n\n"
+        "  sunfleck gallery -o gallery\n  sunfleck lab --list\n  sunfleck chart --quick\n\n"
         "Each command has its own --help.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -188,14 +189,13 @@ def _parser() -> _Parser:
     _add_plan(commands)
     add_gallery(commands)
     add_lab(commands)
+    add_chart(commands)
     return parser
 
 
 def _scene(name: str, environment: str | None = None, rotation: float = 0.0) -> sf.Scene:
-    if name not in SCENES and not Path(name).suffix:
-        raise ValueError(f"there is no scene {name!r}; give one of {', '.join(SCENES)}, or a file")
     if environment is None:
-        return SCENES[name]() if name in SCENES else sf.load(name)
+        return scene_by_name(name)
     image = read_radiance(environment)
     if name not in SCENES:
         up = (0, 0, 1) if z_is_up(name) else (0, 1, 0)

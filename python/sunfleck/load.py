@@ -18,9 +18,10 @@ from sunfleck._arguments import Vector, vector
 from sunfleck._files import FilePath, given_path
 from sunfleck.gltf import Contents, View, read_gltf
 from sunfleck.scene import Camera, Mesh, Scene
+from sunfleck.scenes import SCENES
 from sunfleck.sky import Environment
 
-__all__ = ["FILE_TYPES", "load", "z_is_up"]
+__all__ = ["FILE_TYPES", "load", "scene_by_name", "z_is_up"]
 
 _log = logging.getLogger("sunfleck")
 
@@ -229,3 +230,33 @@ def load(path: FilePath, *, environment: Environment | None = None) -> Scene:
             *(file, _LIGHT_SIDE * radius, _RADIANCE, *light.vertices.mean(axis=0)),
         )
     return Scene(meshes, camera, suns=contents.suns, environment=environment)
+
+
+def scene_by_name(name: str) -> Scene:
+    """A built-in scene by its name, or a file's.
+
+    Parameters
+    ----------
+    name : str
+        One of `sunfleck.scenes.SCENES`, or a path.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    ValueError
+        Neither: no such scene, and no ending.
+    Exception
+        As `load` raises.
+
+    Examples
+    --------
+    >>> from sunfleck.load import scene_by_name
+    >>> scene_by_name("cornell").max_bounces
+    5
+    """
+    if name not in SCENES and not Path(name).suffix:
+        raise ValueError(f"there is no scene {name!r}; give one of {', '.join(SCENES)}, or a file")
+    return SCENES[name]() if name in SCENES else load(name)

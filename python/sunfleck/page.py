@@ -15,7 +15,7 @@ from sunfleck._files import FilePath, replacing
 from sunfleck.error import Error
 from sunfleck.figure import Panel, plotly_figure
 
-__all__ = ["PAGE_TYPES", "Page"]
+__all__ = ["PAGE_TYPES", "Page", "plotly"]
 
 PAGE_TYPES = (".html",)
 
@@ -54,7 +54,14 @@ for (const place of document.querySelectorAll(".chart")) {
 """
 
 
-def _plotly() -> str:
+def plotly() -> str:
+    """The library that draws the interactive charts.
+
+    Raises
+    ------
+    sunfleck.Error
+        plotly is not installed.
+    """
     try:
         from plotly.offline import get_plotlyjs
     except ImportError:
@@ -126,7 +133,7 @@ class Page:
             It has charts, and plotly is not installed.
         """
         title = html.escape(self._title)
-        library = f"<script>{_plotly()}</script>" if self._charts else ""
+        library = f"<script>{plotly()}</script>" if self._charts else ""
         return (
             f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
             f'<link rel="icon" href="data:,"><style>{_STYLE}</style>{library}</head><body><h1>{title}</h1>'

@@ -43,13 +43,15 @@ def compiler() -> str:
     return signed[1].decode() if signed else "unknown compiler"
 
 
-def provenance(seeds: Sequence[int]) -> str:
+def provenance(seeds: Sequence[int], dates: Sequence[str] = ()) -> str:
     """One line with processor, cores, compiler, instruction set, version, seeds and date.
 
     Parameters
     ----------
     seeds : sequence of int
         Those that the figure was measured with.
+    dates : sequence of str
+        Of the measurements; none means today.
 
     Returns
     -------
@@ -62,5 +64,6 @@ def provenance(seeds: Sequence[int]) -> str:
     True
     """
     named = f"seeds {seeds[0]} .. {seeds[-1]}" if len(seeds) > 1 else f"seed {seeds[0]}"
+    date = " and ".join(dict.fromkeys([dates[0], dates[-1]])) if dates else datetime.date.today().isoformat()
     version = f"sunfleck {_core.version()} ({_core.isa()})"
-    return f"{processor()}; {compiler()}; {version}; {named}; {datetime.date.today().isoformat()}"
+    return f"{processor()}; {compiler()}; {version}; {named}; {date}"
