@@ -20,13 +20,15 @@ static void keep(sf_batch *b, const sf_scene *scene, uint32_t count) {
             along += direction * b->hit_normal[c][i];
         }
         b->outside[k] = along < 0 ? 1.0f : 0.0f;
-        b->lift[k] = sf_lift(b->origin[0][i], b->origin[1][i], b->origin[2][i], b->distance[i]);
         b->surface[k] = b->mesh[i];
+        float lift = sf_lift(b->origin[0][i], b->origin[1][i], b->origin[2][i], b->distance[i]);
+        float least = scene->mesh_table.columns[SF_MESH_LIFT][b->mesh[i]];
+        b->lift[k] = (lift > least ? lift : least) * (1 + scene->back);
     }
     if (!scene->rounds) return;
     for (uint32_t k = 0; k < count; ++k) {
         const sf_round *round = scene->rounds + b->surface[k];
-        if (round->kind == SF_ROUND_SPHERE) b->lift[k] = sf_lift_on_sphere(round, b->lift[k]);
+        if (round->kind == SF_ROUND_SPHERE) b->lift[k] = sf_lift_on_sphere(round, b->lift[k]) * (1 + scene->back);
     }
 }
 

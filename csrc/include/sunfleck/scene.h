@@ -24,7 +24,8 @@ typedef struct sf_scene sf_scene;
  *
  * The arrays stay the caller's: they must neither change nor go before the scene is destroyed.
  * Embree reads them in place. It may read 4 bytes past the last vertex; where those could lie
- * on another memory page (1 array in 1,000), the scene makes one copy instead, and
+ * on another memory page (1 array in 1,000), the scene makes one copy instead, as of the vertices of
+ * a scene farther from the origin than 4 times its size, which is traced near it;
  * sf_scene_info.copied_bytes says how much. */
 typedef struct sf_mesh {
     const float *vertices;     /* vertex_count * 3, finite, |coordinate| <= 1e12 */
@@ -140,6 +141,12 @@ sf_status sf_scene_set_light_sampling(sf_scene *scene, sf_light_sampling samplin
  * `ratio` of their diagonals, and by area from all others. 0 .. infinity; default 1; 0 is always by
  * area. A scene none of whose 16 largest lights has a surface so near has no such stage. */
 sf_status sf_scene_set_solid_angle_ratio(sf_scene *scene, float ratio, sf_error *error);
+
+/* Not 0: no ray passes between triangles that share an edge. Embree intersects by its watertight test
+ * (Woop, Benthin, Wald 2013), and hits are moved back along their rays as well as off the surface.
+ * Default 0: of rays within a closed box about 1 in 10^7 escapes, and more where triangles are smaller;
+ * the price of robust is in docs/scene.md. */
+sf_status sf_scene_set_robust(sf_scene *scene, int robust, sf_error *error);
 
 sf_status sf_scene_set_camera(sf_scene *scene, const sf_camera *camera, sf_error *error);
 
