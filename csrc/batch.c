@@ -143,6 +143,13 @@ static uint32_t trace_surface(run *r, uint32_t bounce, uint32_t count) {
     return count;
 }
 
+static void play_roulette(run *r, uint32_t bounce, uint32_t count) {
+    sf_coordinate_source source = sf_roulette_source(&r->context->scene->plan, bounce);
+    sf_batch *b = r->batch;
+    r->coordinates->fill(&r->context->coordinates, &source, b->blocks, b->block_count, b->coordinate);
+    r->shade->roulette(b, count);
+}
+
 static void place_vertices(run *r, uint32_t bounce, uint32_t count) {
     sf_batch *b = r->batch;
     const sf_scene *scene = r->context->scene;
@@ -180,6 +187,7 @@ void sf_batch_run(sf_batch *batch, const sf_render_context *context) {
         bool onward = r.material || has(&r, bounce < plan->max_bounces ? SF_STAGE_SURFACE : SF_STAGE_LAST_SURFACE);
         if (!light && !onward) break;
         place_vertices(&r, bounce, count);
+        if (context->roulette && bounce >= context->roulette) play_roulette(&r, bounce, count);
         count = compact(&r, count);
         if (count == 0) break;
         if (light) connect_lights(&r, bounce, count);

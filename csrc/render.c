@@ -94,6 +94,7 @@ static sf_status prepare(sf_rounds *r, sf_error *error) {
     r->context.filter = o->pixel_filter;
     r->context.signed_filter = r->film->negative_part > 0;
     r->context.seeds = o->seeds;
+    r->context.roulette = o->roulette;
     r->context.isa = sf_isa_active();
     r->factors = sf_stop_factors_of(o);
     r->film->factor = r->factors.rule;

@@ -144,6 +144,21 @@ static void later_vertex(sf_batch *b, const sf_scene *scene, uint32_t count) {
     }
 }
 
+/* Arvo & Kirk 1990, "Particle Transport and Image Synthesis". The least probability, 1/32, bounds
+ * what the noise of a path can grow by. */
+static void roulette(sf_batch *b, uint32_t count) {
+    float (*u)[SF_PATHS] = sf_coordinates_by_ray(b, count, 1);
+    for (uint32_t i = 0; i < sf_whole_packets(count); ++i) {
+        float red = b->throughput[0][i], green = b->throughput[1][i], blue = b->throughput[2][i];
+        float q = red > green ? red : green;
+        q = q > blue ? q : blue;
+        q = q > 0x1p-5f ? q : 0x1p-5f;
+        q = q < 1 ? q : 1.0f;
+        b->alive[i] &= u[0][i] < q;
+        for (int c = 0; c < 3; ++c) b->throughput[c][i] *= 1 / q;
+    }
+}
+
 static uint32_t list_alive(sf_batch *b, uint32_t count) {
     uint32_t kept = 0;
     for (uint32_t i = 0; i < count; ++i) {
@@ -189,5 +204,5 @@ static void surface(sf_batch *b, uint32_t count) {
     }
 }
 
-const sf_shade_kernels SF_AT_LEVEL(sf_shade_kernels) = {first_radiance, later_radiance, first_vertex,
-                                                        later_vertex,   compact,        surface};
+const sf_shade_kernels SF_AT_LEVEL(sf_shade_kernels) = {first_radiance, later_radiance, first_vertex, later_vertex,
+                                                        roulette,       compact,        surface};
