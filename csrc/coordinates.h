@@ -39,7 +39,8 @@ typedef struct sf_coordinate_source {
     uint32_t count;     /* 1 or 2 */
 } sf_coordinate_source;
 
-#define SF_SET_DIMENSIONS 7 /* light 0 1, then pixel, lens or surface 2 3, then choice 4, lobe 5, roulette 6 */
+/* Light 0 1, then pixel, lens or surface 2 3, then choice 4, lobe 5, roulette 6, fog 7. */
+#define SF_SET_DIMENSIONS 8
 
 typedef struct sf_coordinates {
     sf_pattern pattern;

@@ -310,7 +310,7 @@ sf_status sf_scene_set_max_bounces(sf_scene *scene, uint32_t max_bounces, sf_err
 
 static sf_status build_mesh_table(sf_scene *scene, sf_error *error) {
     sf_mesh_table *table = &scene->mesh_table;
-    size_t rows = scene->info.mesh_count + 1;
+    size_t rows = scene->info.mesh_count + 1 + sf_foggy(scene);
     table->miss = (uint32_t)scene->info.mesh_count;
     for (int c = 0; c < SF_MESH_COLUMNS; ++c) {
         float *column = table->columns[c] = sf_aligned_alloc(rows * sizeof *column);
@@ -325,13 +325,14 @@ static sf_status build_mesh_table(sf_scene *scene, sf_error *error) {
         sf_material_tabulate(table, i, &scene->meshes[i].mesh);
         table->columns[SF_MESH_LIFT][i] = SF_LIFT_OF_EDGES * scene->meshes[i].longest;
     }
+    sf_fog_tabulate(scene, table);
     return SF_STATUS_OK;
 }
 
 static sf_status build_rounds(sf_scene *scene, sf_error *error) {
     const sf_scene_info *info = &scene->info;
     if (info->sphere_count + info->disk_count == 0) return SF_STATUS_OK;
-    size_t bytes = (info->mesh_count + 1) * sizeof *scene->rounds;
+    size_t bytes = (info->mesh_count + 1 + sf_foggy(scene)) * sizeof *scene->rounds;
     scene->rounds = sf_aligned_alloc(bytes);
     if (!scene->rounds) return sf_fail_memory(error, "the table of spheres and disks", bytes);
     memset(scene->rounds, 0, bytes);
@@ -370,6 +371,7 @@ static uint64_t hash_settings(const sf_scene *scene) {
     if (scene->solid_angle_ratio != 1) hash = sf_scene_hash(hash, &scene->solid_angle_ratio, sizeof(float));
     if (scene->info.sun_count) hash = sf_scene_hash(hash, scene->suns, scene->info.sun_count * sizeof *scene->suns);
     if (scene->robust) hash = sf_hash64(hash, 1);
+    if (sf_foggy(scene)) hash = sf_scene_hash(hash, &scene->fog, sizeof scene->fog);
     const sf_environment *e = &scene->environment;
     if (!e->pixels) return hash;
     hash = sf_scene_hash(hash, e->pixels, (size_t)e->width * e->height * 12);
@@ -383,6 +385,8 @@ sf_status sf_scene_commit(sf_scene *scene, sf_error *error) {
     if (status) return status;
     if (scene->info.mesh_count == 0)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "the scene has no mesh, sphere or disk; add at least one");
+    status = sf_fog_check(scene, error);
+    if (status) return status;
     drop_tables(scene);
     scene->back = scene->robust ? 1.0f : 0.0f;
     if (scene->robust) rtcSetSceneFlags(scene->embree, RTC_SCENE_FLAG_ROBUST);

@@ -11,8 +11,8 @@
 #include "sunfleck/discrete.h"
 #include "sunfleck/scene.h"
 
-/* Per-mesh values by Embree's geometry number, as columns. The last row, at `mesh_count`, is
- * all zero and stands for a miss, so that shading needs no branch. */
+/* Per-mesh values by Embree's geometry number, as columns. The row at `mesh_count` is
+ * all zero and stands for a miss, so that shading needs no branch; with fog one more stands for it. */
 typedef enum sf_mesh_column {
     SF_MESH_ALBEDO_R,
     SF_MESH_ALBEDO_G,
@@ -39,6 +39,7 @@ typedef enum sf_scatter {
     SF_SCATTER_SMOOTH_DIELECTRIC,
     SF_SCATTER_ROUGH_CONDUCTOR,
     SF_SCATTER_ROUGH_DIELECTRIC,
+    SF_SCATTER_FOG,
     SF_SCATTERS
 } sf_scatter;
 
@@ -166,6 +167,7 @@ struct sf_scene {
     float solid_angle_ratio;
     sf_sun *suns;
     sf_environment environment;
+    sf_fog fog;
     sf_sky sky;
     sf_round *rounds; /* by geometry number, and the row of a miss; NULL without spheres and disks */
     sf_plan plan;
@@ -220,6 +222,11 @@ sf_status sf_scene_reserve_mesh(sf_scene *scene, sf_error *error);
 uint64_t sf_scene_hash(uint64_t hash, const void *bytes, size_t count);
 #define SF_LENGTH_LIMIT 1e12f   /* volumes, which Embree computes, stay finite */
 #define SF_RADIANCE_LIMIT 1e18f /* sums and products with weights stay finite */
+
+/* fog.c */
+static inline bool sf_foggy(const sf_scene *scene) { return scene->fog.scattering + scene->fog.absorption > 0; }
+sf_status sf_fog_check(const sf_scene *scene, sf_error *error);
+void sf_fog_tabulate(const sf_scene *scene, sf_mesh_table *table);
 
 /* recentre.c: moves a scene that lies far from the origin there. */
 sf_status sf_scene_recentre(sf_scene *scene, sf_error *error);

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sunfleck import _core
 from sunfleck._arguments import Vector, flag, integer, number, text, vector
+from sunfleck.fog import Fog
 from sunfleck.material import Material, default_albedo, material_values
 from sunfleck.shapes import Disk, Sphere
 from sunfleck.sky import Environment, Sun
@@ -322,6 +323,8 @@ class Scene:
     robust : bool
         Whether no ray may pass between triangles that share an edge, at a price. Without it about 1 in
         10^7 rays within a closed box escapes.
+    fog : Fog, optional
+        Between the surfaces; not with a background, suns or an environment.
 
     Raises
     ------
@@ -358,6 +361,7 @@ class Scene:
         light_sampling: str = "both",
         solid_angle_ratio: float = 1.0,
         robust: bool = False,
+        fog: Fog | None = None,
     ) -> None:
         self._shapes = _list_of("meshes", meshes, (Mesh, Sphere, Disk))
         self._suns = _list_of("suns", suns, (Sun,))
@@ -365,6 +369,8 @@ class Scene:
             raise TypeError(f"camera is {camera!r}; give a sunfleck.Camera")
         if not isinstance(environment, (Environment, type(None))):
             raise TypeError(f"environment is {environment!r}; give a sunfleck.Environment")
+        if not isinstance(fog, (Fog, type(None))):
+            raise TypeError(f"fog is {fog!r}; give a sunfleck.Fog")
         self._camera = camera
         self._environment = environment
         self._background = vector("background", background)
@@ -380,6 +386,9 @@ class Scene:
         self._core.set_light_sampling(self._light_sampling)
         self._core.set_solid_angle_ratio(self._solid_angle_ratio)
         self._core.set_robust(self._robust)
+        self._fog = fog
+        if fog is not None:
+            self._core.set_fog(fog.scattering, fog.absorption, fog.g)
         self._core.commit()
         self._info = SceneInfo(**self._core.info())
         self._report()
@@ -435,6 +444,10 @@ class Scene:
     @property
     def robust(self) -> bool:
         return self._robust
+
+    @property
+    def fog(self) -> Fog | None:
+        return self._fog
 
     @property
     def camera(self) -> Camera:

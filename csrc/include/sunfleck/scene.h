@@ -90,6 +90,17 @@ typedef struct sf_environment {
 } sf_environment;
 sf_environment sf_environment_default(void);
 
+/* Homogeneous fog, which fills all space, solids too. It takes exp(-(scattering + absorption) distance)
+ * of light from a ray's path and scatters its part in other directions, by Henyey and Greenstein's
+ * phase function. The same for all colours. A vertex in it counts as a bounce. */
+typedef struct sf_fog {
+    float scattering; /* per unit of length, 0 .. 1e12; default 0 */
+    float absorption; /* the same */
+    float g;          /* the mean cosine of scattering, -0.99 .. 0.99: 0 is isotropic (default), positive forwards */
+} sf_fog;
+sf_fog sf_fog_default(void); /* none */
+#define SF_FOG_LIMIT 1e12f
+
 /* How light that can be sampled is found. All three have the same mean; for tests and study. */
 typedef enum sf_light_sampling {
     SF_LIGHT_SAMPLING_BOTH = 0, /* by light and by surface sampling, weighted; the default */
@@ -136,6 +147,10 @@ sf_status sf_scene_add_sun(sf_scene *scene, const sf_sun *sun, sf_error *error);
 sf_status sf_scene_set_environment(sf_scene *scene, const sf_environment *environment, sf_error *error);
 
 sf_status sf_scene_set_light_sampling(sf_scene *scene, sf_light_sampling sampling, sf_error *error);
+
+/* NULL takes it away; so does a fog of 0. A scene that has both fog and a background, suns or an
+ * environment is refused when it is committed: nothing of them would come through. */
+sf_status sf_scene_set_fog(sf_scene *scene, const sf_fog *fog, sf_error *error);
 
 /* Triangle and rectangle lights are sampled by solid angle from points nearer to their middle than
  * `ratio` of their diagonals, and by area from all others. 0 .. infinity; default 1; 0 is always by
@@ -187,7 +202,8 @@ typedef enum sf_dimension_use {
     SF_DIMENSION_LIGHT,     /* 2: point on the light, for the vertex `bounce` */
     SF_DIMENSION_CHOICE,    /* 1: which light, for the vertex `bounce` */
     SF_DIMENSION_SURFACE,   /* 2: direction off the surface, at the vertex `bounce` */
-    SF_DIMENSION_LOBE       /* 1: reflection or refraction, at the vertex `bounce` */
+    SF_DIMENSION_LOBE,      /* 1: reflection or refraction, at the vertex `bounce` */
+    SF_DIMENSION_FOG        /* 1: how far the ray from the vertex `bounce` goes in fog; 0: the camera's */
 } sf_dimension_use;
 
 typedef struct sf_plan_dimensions {
@@ -203,6 +219,7 @@ typedef enum sf_stage {
     SF_STAGE_LENS,         /* camera rays: thin lens, instead of the pinhole's */
     SF_STAGE_INTERSECT,    /* nearest hits of camera rays */
     SF_STAGE_ROUND,        /* points and normals of spheres and disks */
+    SF_STAGE_FOG,          /* how far rays go in fog; what it leaves of sampled light */
     SF_STAGE_MISS,         /* background radiance for rays that hit nothing */
     SF_STAGE_SKY,          /* radiance of suns and the environment for rays that hit nothing */
     SF_STAGE_EMISSION,     /* radiance of emissive surfaces that rays hit */
@@ -223,7 +240,7 @@ typedef enum sf_stage {
 const char *sf_stage_name(sf_stage stage);
 const char *sf_dimension_use_name(sf_dimension_use use);
 
-#define SF_PLAN_MAX_GROUPS (2 + 4 * SF_MAX_BOUNCES)
+#define SF_PLAN_MAX_GROUPS (3 + 5 * SF_MAX_BOUNCES)
 
 /* What a scene turned out to need, and what the renderer runs: nothing else. */
 typedef struct sf_plan {
