@@ -30,7 +30,9 @@ sf_status sf_fog_check(const sf_scene *scene, sf_error *error) {
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
                        "the scene has fog and light from infinitely far (%s), of which nothing comes through; leave "
                        "one of them out",
-                       background > 0 ? "a background" : scene->info.sun_count ? "a sun" : "an environment");
+                       background > 0          ? "a background"
+                       : scene->info.sun_count ? "a sun"
+                                               : "an environment");
     return SF_STATUS_OK;
 }
 
