@@ -8,6 +8,7 @@
 #include "aov.h"
 #include "camera_kernels.h"
 #include "coordinates_kernels.h"
+#include "fog_kernels.h"
 #include "gather_kernels.h"
 #include "light_kernels.h"
 #include "light_shape_kernels.h"
@@ -56,6 +57,12 @@ static void trace_nearest(run *r, uint32_t packets, const uint32_t *active, sf_c
     if (has(r, SF_STAGE_ROUND)) sf_round_kernels_at(r->context->isa)->face(r->batch, scene, packets * SF_LANES);
 }
 
+/* Ends rays in the fog. */
+static void drift(run *r, uint32_t count) {
+    next_coordinates(r, SF_DIMENSION_FOG, r->batch->coordinate);
+    sf_fog_kernels_at(r->context->isa)->drift(r->batch, r->context->scene, count);
+}
+
 static void trace_camera(run *r) {
     sf_batch *b = r->batch;
     const sf_scene *scene = r->context->scene;
@@ -67,9 +74,10 @@ static void trace_camera(run *r) {
     sf_camera_kernels_at(r->context->isa)
         ->camera(b, &r->context->camera, r->context->filter, lens ? b->coordinate_by_ray : NULL);
     trace_nearest(r, b->block_count, active, SF_COHERENT);
+    if (b->hit_sums) sf_aov_gather(b, r->context);
+    if (has(r, SF_STAGE_FOG)) drift(r, b->block_count * SF_LANES);
     r->shade->first_radiance(b, scene);
     if (has(r, SF_STAGE_SKY)) sf_sky_kernels_at(r->context->isa)->first(b, scene);
-    if (b->hit_sums) sf_aov_gather(b, r->context);
 }
 
 /* Light sampled from the vertices of bounce `bounce`. */
@@ -86,6 +94,7 @@ static void connect_lights(run *r, uint32_t bounce, uint32_t count) {
         r->material->respond(b, scene, onward);
     } else
         (r->special ? r->shapes->light : r->light->light)(b, scene, count, weigh);
+    if (has(r, SF_STAGE_FOG)) sf_fog_kernels_at(r->context->isa)->dim(b, scene, count);
     uint32_t rays = r->light->sort_shadow_rays(b, count);
     sf_trace_shadow(b, scene, r->material ? b->origin : b->point, rays);
     r->light->add_light(b, count);
@@ -139,8 +148,16 @@ static uint32_t trace_surface(run *r, uint32_t bounce, uint32_t count) {
     if (r->material)
         for (uint32_t i = 0; i < count; ++i) active[i / SF_LANES] &= ~((b->alive[i] ^ 1u) << i % SF_LANES);
     trace_nearest(r, packets, active, SF_INCOHERENT);
+    if (has(r, SF_STAGE_FOG)) drift(r, count);
     add_found(r, count);
     return count;
+}
+
+static void play_roulette(run *r, uint32_t bounce, uint32_t count) {
+    sf_coordinate_source source = sf_roulette_source(&r->context->scene->plan, bounce);
+    sf_batch *b = r->batch;
+    r->coordinates->fill(&r->context->coordinates, &source, b->blocks, b->block_count, b->coordinate);
+    r->shade->roulette(b, count);
 }
 
 static void place_vertices(run *r, uint32_t bounce, uint32_t count) {
@@ -180,6 +197,7 @@ void sf_batch_run(sf_batch *batch, const sf_render_context *context) {
         bool onward = r.material || has(&r, bounce < plan->max_bounces ? SF_STAGE_SURFACE : SF_STAGE_LAST_SURFACE);
         if (!light && !onward) break;
         place_vertices(&r, bounce, count);
+        if (context->roulette && bounce >= context->roulette) play_roulette(&r, bounce, count);
         count = compact(&r, count);
         if (count == 0) break;
         if (light) connect_lights(&r, bounce, count);

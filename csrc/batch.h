@@ -36,7 +36,8 @@ typedef struct sf_render_context {
     sf_pixel_filter filter;
     bool signed_filter; /* it has negative lobes */
     sf_seed_policy seeds;
-    uint32_t aovs; /* bit k: sf_aov k is asked for */
+    uint32_t roulette; /* bounce from which on; 0: none */
+    uint32_t aovs;     /* bit k: sf_aov k is asked for */
     sf_isa isa;
 } sf_render_context;
 

@@ -76,6 +76,7 @@ static const option_field option_fields[] = {
     OPTION(seed, SF_ARRAY_U64, 1, EQUAL),
     OPTION(threads, SF_ARRAY_U32, 1, FREE),
     OPTION(tile_size, SF_ARRAY_U32, 1, FREE),
+    OPTION(roulette, SF_ARRAY_U32, 1, EQUAL),
 };
 #define OPTION_COUNT (sizeof option_fields / sizeof *option_fields)
 

@@ -43,6 +43,10 @@ static void assign_sources(sf_coordinates *coordinates, const sf_plan *plan) {
             case SF_DIMENSION_SURFACE: source->dimension = 2; break;
             case SF_DIMENSION_CHOICE: source->dimension = 4; break;
             case SF_DIMENSION_LOBE: source->dimension = 5; break;
+            case SF_DIMENSION_FOG:
+                if (group->bounce == 0) source->set = plan->max_bounces;
+                source->dimension = 7;
+                break;
         }
     }
 }

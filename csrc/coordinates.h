@@ -39,7 +39,8 @@ typedef struct sf_coordinate_source {
     uint32_t count;     /* 1 or 2 */
 } sf_coordinate_source;
 
-#define SF_SET_DIMENSIONS 6 /* light 0 1, then pixel, lens or surface 2 3, then choice 4, lobe 5 */
+/* Light 0 1, then pixel, lens or surface 2 3, then choice 4, lobe 5, roulette 6, fog 7. */
+#define SF_SET_DIMENSIONS 8
 
 typedef struct sf_coordinates {
     sf_pattern pattern;
@@ -55,5 +56,11 @@ typedef struct sf_coordinates {
  * jittered then fills one 4 x 4 grid after another, and uniform is refused. */
 sf_status sf_coordinates_init(sf_coordinates *coordinates, sf_pattern pattern, const sf_plan *plan, uint32_t spp,
                               uint64_t seed, sf_error *error);
+
+/* The coordinate of Russian roulette at the vertex `bounce`, which comes after the plan's own. */
+static inline sf_coordinate_source sf_roulette_source(const sf_plan *plan, uint32_t bounce) {
+    return (sf_coordinate_source){
+        .set = bounce - 1, .dimension = 6, .first = plan->dimensions_per_path + bounce, .count = 1};
+}
 
 #endif

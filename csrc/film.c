@@ -328,6 +328,7 @@ static void describe_options(sf_film *film, const sf_render_options *o) {
     describe(film, "seed", "%" PRIu64, o->seed);
     describe(film, "threads", "%" PRIu32, o->threads);
     describe(film, "tile_size", "%" PRIu32, o->tile_size);
+    describe(film, "roulette", "%" PRIu32, o->roulette);
     char aovs[SF_AOV_TEXT_SIZE], mask[SF_MASK_TEXT_SIZE];
     sf_aov_list(o->aovs, aovs);
     sf_mask_describe(film, mask);

@@ -37,7 +37,8 @@ static inline void connect(sf_batch *b, const light_lanes *lights, uint32_t firs
     float largest = ax > ay ? ax : ay;
     largest = largest > az ? largest : az;
     float square = to[0] * to[0] + to[1] * to[1] + to[2] * to[2], distance = sqrtf(square), inverse = 1 / square;
-    float lift = 0x1p-18f * (largest + distance);
+    float lift = 0x1p-18f * (largest + distance), least = field[SF_LIGHT_LIFT][l];
+    lift = lift > least ? lift : least;
     float cos_surface = to[0] * b->normal[0][i] + to[1] * b->normal[1][i] + to[2] * b->normal[2][i];
     float cos_light = -(to[0] * normal[0] + to[1] * normal[1] + to[2] * normal[2]);
     bool sees = (cos_surface > 0) & (cos_light > 0);

@@ -56,9 +56,10 @@ static void choose_ways(shape_lanes *lanes) {
 /* ---- flat pieces ---- */
 
 /* How far a light point is moved off its surface: as the vertex was, so that the ray ends before it. */
-static inline float lift_of(const float end[3], float distance) {
+static inline float lift_of(const float end[3], float distance, float least) {
     float ax = fabsf(end[0]), ay = fabsf(end[1]), az = fabsf(end[2]), largest = ax > ay ? ax : ay;
-    return 0x1p-18f * ((largest > az ? largest : az) + distance);
+    float lift = 0x1p-18f * ((largest > az ? largest : az) + distance);
+    return lift > least ? lift : least;
 }
 
 /* The multiples of the edges: on a triangle the lecture's map, on a parallelogram the unit square
@@ -82,7 +83,8 @@ static void draw_by_area(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_R
             along -= to[c] * lanes->field[SF_LIGHT_NORMAL_X + c][l];
             square += to[c] * to[c];
         }
-        float distance = sqrtf(square), inverse = 1 / distance, lift = lift_of(end, distance);
+        float distance = sqrtf(square), inverse = 1 / distance;
+        float lift = lift_of(end, distance, lanes->field[SF_LIGHT_LIFT][l]);
         /* Density by area to density by solid angle: distance^2 / cosine. */
         float density = square * distance / (along * lanes->field[SF_LIGHT_AREA][l]);
         bool mine = lanes->way[l] == SF_LIGHT_BY_AREA;
@@ -108,7 +110,7 @@ static inline void end_on_plane(const shape_lanes *SF_RESTRICT lanes, drawn_lane
         d->direction[c][l] = w[c];
         end[c] = lanes->point[c][l] + distance * w[c];
     }
-    float lift = lift_of(end, distance);
+    float lift = lift_of(end, distance, lanes->field[SF_LIGHT_LIFT][l]);
     for (int c = 0; c < 3; ++c) d->to[c][l] = distance * w[c] + lift * lanes->field[SF_LIGHT_NORMAL_X + c][l];
     d->density[l] = (height > 0) & (along > 0) & (share > 0) ? 0.25f / (SF_PI_F * share) : 0.0f;
 }
@@ -191,7 +193,7 @@ static inline void draw_sphere(const shape_lanes *SF_RESTRICT lanes, drawn_lanes
     const float outwards[3] = {local[0] * across, local[1] * across, -cosine};
     sf_frame_to_world(tangent, bitangent, axis, outwards, normal);
     for (int c = 0; c < 3; ++c) end[c] = lanes->field[SF_LIGHT_ORIGIN_X + c][l] + radius * normal[c];
-    float lift = lift_of(end, distance) + 0x1p-18f * radius;
+    float lift = lift_of(end, distance, 0) + 0x1p-18f * radius;
     for (int c = 0; c < 3; ++c) {
         d->direction[c][l] = w[c];
         d->to[c][l] = (end[c] - lanes->point[c][l]) + lift * normal[c];

@@ -168,6 +168,9 @@ static double write_flat(float *piece, const sf_mesh *mesh, const candidate *fro
         piece[SF_LIGHT_NORMAL_X + c] = (float)(n[c] / length);
         piece[SF_LIGHT_MIDDLE_X + c] = (float)((double)k[c] + share * ((double)i[c] - k[c] + ((double)j[c] - k[c])));
     }
+    float longest = 0;
+    for (int f = SF_LIGHT_EDGE1_X; f <= SF_LIGHT_EDGE2_Z; ++f) longest = fmaxf(longest, fabsf(piece[f]));
+    piece[SF_LIGHT_LIFT] = SF_LIFT_OF_EDGES * longest;
     piece[SF_LIGHT_RECTANGLE] = from->rectangle;
     piece[SF_LIGHT_KIND] = (float)(from->rectangle ? SF_LIGHT_IS_PARALLELOGRAM : SF_LIGHT_IS_TRIANGLE);
     piece[SF_LIGHT_NEAR] = near_square(piece, ratio);

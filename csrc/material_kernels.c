@@ -20,13 +20,15 @@ static void keep(sf_batch *b, const sf_scene *scene, uint32_t count) {
             along += direction * b->hit_normal[c][i];
         }
         b->outside[k] = along < 0 ? 1.0f : 0.0f;
-        b->lift[k] = sf_lift(b->origin[0][i], b->origin[1][i], b->origin[2][i], b->distance[i]);
         b->surface[k] = b->mesh[i];
+        float lift = sf_lift(b->origin[0][i], b->origin[1][i], b->origin[2][i], b->distance[i]);
+        float least = scene->mesh_table.columns[SF_MESH_LIFT][b->mesh[i]];
+        b->lift[k] = (lift > least ? lift : least) * (1 + scene->back);
     }
     if (!scene->rounds) return;
     for (uint32_t k = 0; k < count; ++k) {
         const sf_round *round = scene->rounds + b->surface[k];
-        if (round->kind == SF_ROUND_SPHERE) b->lift[k] = sf_lift_on_sphere(round, b->lift[k]);
+        if (round->kind == SF_ROUND_SPHERE) b->lift[k] = sf_lift_on_sphere(round, b->lift[k]) * (1 + scene->back);
     }
 }
 
@@ -175,6 +177,23 @@ static inline void respond_dielectric(sf_batch *b, const sf_scene *scene, uint32
     take_light(b, i, values, weigh ? pdf : 0.0f, to[2]);
 }
 
+/* Of fog, whose normal is against the direction of travel, from which the phase function counts. */
+static inline void turn_around(const float local[3], float travel[3]) {
+    travel[0] = local[0];
+    travel[1] = local[1];
+    travel[2] = -local[2];
+}
+
+static inline void respond_fog(sf_batch *b, const sf_scene *scene, uint32_t i, bool weigh) {
+    vertex v = vertex_at(b, i);
+    float to[3], travel[3];
+    look_at_light(b, i, &v, to);
+    turn_around(to, travel);
+    float value = sf_henyey_greenstein_pdf(travel, scene->fog.g);
+    const float values[3] = {value, value, value};
+    take_light(b, i, values, weigh ? value : 0.0f, 1);
+}
+
 /* The vertices i that scatter in one way. */
 #define FOR_EACH(b, scatter, i)                        \
     for (uint32_t k_ = (b)->scatter_first[scatter], i; \
@@ -188,6 +207,7 @@ static void respond(sf_batch *b, const sf_scene *scene, bool diffuse_goes_on) {
     FOR_EACH(b, SF_SCATTER_SMOOTH_DIELECTRIC, i) b->alive[i] = 0;
     FOR_EACH(b, SF_SCATTER_ROUGH_CONDUCTOR, i) respond_conductor(b, scene, i, weigh);
     FOR_EACH(b, SF_SCATTER_ROUGH_DIELECTRIC, i) respond_dielectric(b, scene, i, weigh);
+    FOR_EACH(b, SF_SCATTER_FOG, i) respond_fog(b, scene, i, weigh);
 }
 
 /* ---- surface rays ---- */
@@ -245,6 +265,15 @@ static inline void rough_dielectric(sf_batch *b, const sf_scene *scene, uint32_t
     leave(b, i, &v, local, factor, pdf);
 }
 
+static inline void fog(sf_batch *b, const sf_scene *scene, uint32_t i, float s, float t) {
+    vertex v = vertex_at(b, i);
+    const float whole[3] = {1, 1, 1};
+    float travel[3], local[3];
+    sf_henyey_greenstein_sample(s, t, scene->fog.g, travel);
+    turn_around(travel, local);
+    leave(b, i, &v, local, whole, sf_henyey_greenstein_pdf(travel, scene->fog.g));
+}
+
 static void scatter(sf_batch *b, const sf_scene *scene, uint32_t count) {
     float (*u)[SF_PATHS] = sf_coordinates_by_ray(b, count, 3);
     FOR_EACH(b, SF_SCATTER_DIFFUSE, i) b->alive[i] = 1;
@@ -253,6 +282,7 @@ static void scatter(sf_batch *b, const sf_scene *scene, uint32_t count) {
     FOR_EACH(b, SF_SCATTER_SMOOTH_DIELECTRIC, i) smooth_dielectric(b, scene, i, u[2][i]);
     FOR_EACH(b, SF_SCATTER_ROUGH_CONDUCTOR, i) rough_conductor(b, scene, i, u[0][i], u[1][i]);
     FOR_EACH(b, SF_SCATTER_ROUGH_DIELECTRIC, i) rough_dielectric(b, scene, i, u[0][i], u[1][i], u[2][i]);
+    FOR_EACH(b, SF_SCATTER_FOG, i) fog(b, scene, i, u[0][i], u[1][i]);
 }
 
 static void end_diffuse(sf_batch *b, uint32_t count) {

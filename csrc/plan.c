@@ -13,6 +13,7 @@ const char *sf_stage_name(sf_stage stage) {
         case SF_STAGE_LENS: return "lens";
         case SF_STAGE_INTERSECT: return "intersect";
         case SF_STAGE_ROUND: return "round shapes";
+        case SF_STAGE_FOG: return "fog";
         case SF_STAGE_MISS: return "miss";
         case SF_STAGE_SKY: return "sky";
         case SF_STAGE_EMISSION: return "emission";
@@ -36,13 +37,14 @@ const char *sf_dimension_use_name(sf_dimension_use use) {
         case SF_DIMENSION_CHOICE: return "choice";
         case SF_DIMENSION_SURFACE: return "surface";
         case SF_DIMENSION_LOBE: return "lobe";
+        case SF_DIMENSION_FOG: return "fog";
     }
     return "unknown dimension";
 }
 
 /* What the scene holds, as far as the plan depends on it. */
 typedef struct contents {
-    bool emission, background, lens, round, sky, environment, special;
+    bool emission, background, lens, round, sky, environment, special, fog;
     bool spreading; /* surfaces that scatter in more directions than few: diffuse or rough */
     bool scatter;   /* surfaces that are not diffuse; */
     bool lobes;     /* of these, such as reflect and refract */
@@ -56,6 +58,7 @@ static contents survey(const sf_scene *scene) {
                     .round = scene->rounds != NULL,
                     .environment = scene->environment.pixels != NULL,
                     .special = scene->lights.special,
+                    .fog = sf_foggy(scene),
                     .sampling = scene->light_sampling};
     for (size_t i = 0; i < scene->info.mesh_count; ++i) {
         has.emission |= sf_emits(&scene->meshes[i].mesh);
@@ -65,6 +68,8 @@ static contents survey(const sf_scene *scene) {
         has.scatter |= scatter != SF_SCATTER_DIFFUSE;
         has.lobes |= scatter == SF_SCATTER_SMOOTH_DIELECTRIC || scatter == SF_SCATTER_ROUGH_DIELECTRIC;
     }
+    has.scatter |= has.fog;
+    has.spreading |= has.fog;
     for (int c = 0; c < 3; ++c) has.background |= scene->background[c] > 0;
     has.sky = has.environment;
     for (size_t i = 0; i < scene->sky.sun_count; ++i) has.sky |= scene->sky.suns[i].height > 0;
@@ -77,6 +82,7 @@ static uint32_t choose_stages(const contents *has, uint32_t max_bounces) {
     NEED(!has->lens, SF_STAGE_CAMERA);
     NEED(has->lens, SF_STAGE_LENS);
     NEED(has->round, SF_STAGE_ROUND);
+    NEED(has->fog, SF_STAGE_FOG);
     NEED(has->background, SF_STAGE_MISS);
     NEED(has->sky, SF_STAGE_SKY);
     NEED(has->emission, SF_STAGE_EMISSION);
@@ -116,6 +122,7 @@ void sf_plan_derive(const sf_scene *scene, sf_plan *plan) {
     plan->camera_rays = 1;
     add_dimensions(plan, SF_DIMENSION_PIXEL, 0, 2);
     if (has.lens) add_dimensions(plan, SF_DIMENSION_LENS, 0, 2);
+    if (has.fog) add_dimensions(plan, SF_DIMENSION_FOG, 0, 1);
     for (uint32_t bounce = 1; bounce <= plan->max_bounces; ++bounce) {
         if (sf_plan_has(plan, SF_STAGE_LIGHT)) {
             add_dimensions(plan, SF_DIMENSION_LIGHT, bounce, 2);
@@ -126,6 +133,7 @@ void sf_plan_derive(const sf_scene *scene, sf_plan *plan) {
         if (scatter || sf_plan_has(plan, bounce < plan->max_bounces ? SF_STAGE_SURFACE : SF_STAGE_LAST_SURFACE)) {
             if (has.spreading) add_dimensions(plan, SF_DIMENSION_SURFACE, bounce, 2);
             if (scatter && has.lobes) add_dimensions(plan, SF_DIMENSION_LOBE, bounce, 1);
+            if (has.fog) add_dimensions(plan, SF_DIMENSION_FOG, bounce, 1);
             ++plan->surface_rays;
         }
     }

@@ -90,9 +90,11 @@ static sf_status prepare(sf_rounds *r, sf_error *error) {
                        "samples is %" PRIu64 "; at least %s for each of %" PRIu64 " pixels is allowed", o->samples,
                        o->unbiased ? "two, with unbiased," : "one", r->region);
     r->context.camera = sf_camera_frame_of(&scene->camera, o->width, o->height);
+    for (int c = 0; c < 3; ++c) r->context.camera.position[c] -= scene->shift[c];
     r->context.filter = o->pixel_filter;
     r->context.signed_filter = r->film->negative_part > 0;
     r->context.seeds = o->seeds;
+    r->context.roulette = o->roulette;
     r->context.isa = sf_isa_active();
     r->factors = sf_stop_factors_of(o);
     r->film->factor = r->factors.rule;

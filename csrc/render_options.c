@@ -63,6 +63,9 @@ static sf_status check_budget(sf_render_options *o, sf_error *error) {
     if (!status) status = check_tolerance("absolute_tolerance", o->absolute_tolerance, error);
     if (!status) status = check_range("max_spp", o->max_spp, 2, SF_MAX_SPP, error);
     if (!status) status = check_range("min_spp", o->min_spp, 2, o->max_spp, error);
+    if (!status && o->roulette && (o->roulette < 2 || o->roulette > SF_MAX_BOUNCES))
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "roulette is %u; it must be 2 to %d, or 0 for none", o->roulette,
+                       SF_MAX_BOUNCES);
     if (status) return status;
     if (!(o->confidence > 0 && o->confidence < 1))
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "confidence is %g; it must be in (0, 1)", o->confidence);

@@ -37,7 +37,8 @@ static void settle(sf_batch *b, const sf_scene *scene, uint32_t count) {
         float lift =
             sf_lift_on_sphere(round, sf_lift(b->origin[0][i], b->origin[1][i], b->origin[2][i], b->distance[i]));
         for (int c = 0; c < 3; ++c)
-            b->point[c][i] = (centre[c] + round->radius * b->hit_normal[c][i]) + lift * b->normal[c][i];
+            b->point[c][i] = (centre[c] + round->radius * b->hit_normal[c][i]) +
+                             lift * (b->normal[c][i] - scene->back * b->direction[c][i]);
     }
 }
 

@@ -131,6 +131,19 @@ uint64_t sf_scene_hash(uint64_t hash, const void *bytes, size_t count) {
     return sf_hash64(hash, word);
 }
 
+static float longest_edge(const sf_mesh *mesh) {
+    float longest = 0;
+    for (size_t i = 0; i < mesh->triangle_count; ++i) {
+        const uint32_t *t = mesh->triangles + 3 * i;
+        for (int c = 0; c < 3; ++c) {
+            float x = mesh->vertices[3 * (size_t)t[0] + (size_t)c], y = mesh->vertices[3 * (size_t)t[1] + (size_t)c];
+            float z = mesh->vertices[3 * (size_t)t[2] + (size_t)c];
+            longest = fmaxf(longest, fmaxf(fmaxf(x, y), z) - fminf(fminf(x, y), z));
+        }
+    }
+    return longest;
+}
+
 /* Takes bounds, hash and degenerate triangles of a checked mesh into the scene's. */
 static void survey_mesh(sf_scene_info *info, const sf_mesh *mesh, size_t *degenerate) {
     for (size_t i = 0; i < 3 * mesh->vertex_count; ++i) {
@@ -195,7 +208,7 @@ sf_status sf_scene_add_mesh(sf_scene *scene, const sf_mesh *mesh, sf_error *erro
                        "mesh %zu emits light but all of its %zu triangles have area 0; a light needs an area", number,
                        mesh->triangle_count);
 
-    sf_scene_mesh kept = {.mesh = *mesh};
+    sf_scene_mesh kept = {.mesh = *mesh, .longest = longest_edge(mesh)};
     if (!can_read_past(mesh->vertices, 12 * mesh->vertex_count))
         status = copy_padded((const void **)&kept.mesh.vertices, (void **)&kept.vertex_copy, 12 * mesh->vertex_count,
                              &info, error);
@@ -279,6 +292,12 @@ sf_status sf_scene_set_solid_angle_ratio(sf_scene *scene, float ratio, sf_error 
     return SF_STATUS_OK;
 }
 
+sf_status sf_scene_set_robust(sf_scene *scene, int robust, sf_error *error) {
+    sf_status status = sf_scene_refuse_committed(scene, error);
+    if (!status) scene->robust = robust != 0;
+    return status;
+}
+
 sf_status sf_scene_set_max_bounces(sf_scene *scene, uint32_t max_bounces, sf_error *error) {
     sf_status status = sf_scene_refuse_committed(scene, error);
     if (status) return status;
@@ -291,7 +310,7 @@ sf_status sf_scene_set_max_bounces(sf_scene *scene, uint32_t max_bounces, sf_err
 
 static sf_status build_mesh_table(sf_scene *scene, sf_error *error) {
     sf_mesh_table *table = &scene->mesh_table;
-    size_t rows = scene->info.mesh_count + 1;
+    size_t rows = scene->info.mesh_count + 1 + sf_foggy(scene);
     table->miss = (uint32_t)scene->info.mesh_count;
     for (int c = 0; c < SF_MESH_COLUMNS; ++c) {
         float *column = table->columns[c] = sf_aligned_alloc(rows * sizeof *column);
@@ -304,14 +323,16 @@ static sf_status build_mesh_table(sf_scene *scene, sf_error *error) {
             table->columns[SF_MESH_EMISSION_R + c][i] = scene->meshes[i].mesh.emission[c];
         }
         sf_material_tabulate(table, i, &scene->meshes[i].mesh);
+        table->columns[SF_MESH_LIFT][i] = SF_LIFT_OF_EDGES * scene->meshes[i].longest;
     }
+    sf_fog_tabulate(scene, table);
     return SF_STATUS_OK;
 }
 
 static sf_status build_rounds(sf_scene *scene, sf_error *error) {
     const sf_scene_info *info = &scene->info;
     if (info->sphere_count + info->disk_count == 0) return SF_STATUS_OK;
-    size_t bytes = (info->mesh_count + 1) * sizeof *scene->rounds;
+    size_t bytes = (info->mesh_count + 1 + sf_foggy(scene)) * sizeof *scene->rounds;
     scene->rounds = sf_aligned_alloc(bytes);
     if (!scene->rounds) return sf_fail_memory(error, "the table of spheres and disks", bytes);
     memset(scene->rounds, 0, bytes);
@@ -349,6 +370,8 @@ static uint64_t hash_settings(const sf_scene *scene) {
     if (scene->light_sampling) hash = sf_hash64(hash, (uint64_t)scene->light_sampling);
     if (scene->solid_angle_ratio != 1) hash = sf_scene_hash(hash, &scene->solid_angle_ratio, sizeof(float));
     if (scene->info.sun_count) hash = sf_scene_hash(hash, scene->suns, scene->info.sun_count * sizeof *scene->suns);
+    if (scene->robust) hash = sf_hash64(hash, 1);
+    if (sf_foggy(scene)) hash = sf_scene_hash(hash, &scene->fog, sizeof scene->fog);
     const sf_environment *e = &scene->environment;
     if (!e->pixels) return hash;
     hash = sf_scene_hash(hash, e->pixels, (size_t)e->width * e->height * 12);
@@ -362,8 +385,13 @@ sf_status sf_scene_commit(sf_scene *scene, sf_error *error) {
     if (status) return status;
     if (scene->info.mesh_count == 0)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "the scene has no mesh, sphere or disk; add at least one");
+    status = sf_fog_check(scene, error);
+    if (status) return status;
     drop_tables(scene);
-    status = build_mesh_table(scene, error);
+    scene->back = scene->robust ? 1.0f : 0.0f;
+    if (scene->robust) rtcSetSceneFlags(scene->embree, RTC_SCENE_FLAG_ROBUST);
+    status = sf_scene_recentre(scene, error);
+    if (!status) status = build_mesh_table(scene, error);
     if (!status) status = build_rounds(scene, error);
     if (!status) status = sf_sky_build(scene, error);
     if (!status) status = sf_lights_build(scene, error);

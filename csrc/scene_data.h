@@ -11,8 +11,8 @@
 #include "sunfleck/discrete.h"
 #include "sunfleck/scene.h"
 
-/* Per-mesh values by Embree's geometry number, as columns. The last row, at `mesh_count`, is
- * all zero and stands for a miss, so that shading needs no branch. */
+/* Per-mesh values by Embree's geometry number, as columns. The row at `mesh_count` is
+ * all zero and stands for a miss, so that shading needs no branch; with fog one more stands for it. */
 typedef enum sf_mesh_column {
     SF_MESH_ALBEDO_R,
     SF_MESH_ALBEDO_G,
@@ -27,6 +27,7 @@ typedef enum sf_mesh_column {
     SF_MESH_SCATTER, /* sf_scatter, as a float */
     SF_MESH_IOR,
     SF_MESH_ALPHA, /* GGX's */
+    SF_MESH_LIFT,  /* the least that hits are moved off the surface; see rays.h */
     SF_MESH_COLUMNS
 } sf_mesh_column;
 
@@ -38,6 +39,7 @@ typedef enum sf_scatter {
     SF_SCATTER_SMOOTH_DIELECTRIC,
     SF_SCATTER_ROUGH_CONDUCTOR,
     SF_SCATTER_ROUGH_DIELECTRIC,
+    SF_SCATTER_FOG,
     SF_SCATTERS
 } sf_scatter;
 
@@ -82,6 +84,7 @@ typedef enum sf_light_field {
     SF_LIGHT_WEIGHT_B,
     SF_LIGHT_PDF,                     /* density by area over all the lights together */
     SF_LIGHT_RECTANGLE,               /* 1 for a parallelogram, 0 for a triangle */
+    SF_LIGHT_LIFT,                    /* the least that points on it are moved off it; see rays.h */
     SF_LIGHT_SAMPLED,                 /* how many fields a sample needs: those above */
     SF_LIGHT_KEEP = SF_LIGHT_SAMPLED, /* alias table: probability to keep the piece drawn */
     /* What SF_STAGE_LIGHT_SHAPES needs beyond these. */
@@ -140,6 +143,7 @@ typedef struct sf_scene_mesh {
     float *vertex_copy; /* NULL where Embree reads the caller's */
     uint32_t *index_copy;
     sf_round round; /* where it is no mesh, but a sphere or disk: `mesh` has no arrays then */
+    float longest;  /* edge of its triangles, by its largest coordinate */
 } sf_scene_mesh;
 
 struct sf_scene {
@@ -151,6 +155,10 @@ struct sf_scene {
     sf_camera camera;
     float background[3];
     uint32_t max_bounces;
+    bool robust;
+    float back;         /* 1 where robust, else 0: of the lift, how far a hit is moved back along its ray */
+    float shift[3];     /* what was subtracted from all coordinates; see recentre.c */
+    size_t moved_count; /* meshes that it was subtracted from */
     float normal_scale; /* brings Embree's normals, of the length of areas, to the order of 1 */
     sf_scene_info info;
     sf_mesh_table mesh_table;
@@ -159,6 +167,7 @@ struct sf_scene {
     float solid_angle_ratio;
     sf_sun *suns;
     sf_environment environment;
+    sf_fog fog;
     sf_sky sky;
     sf_round *rounds; /* by geometry number, and the row of a miss; NULL without spheres and disks */
     sf_plan plan;
@@ -213,6 +222,19 @@ sf_status sf_scene_reserve_mesh(sf_scene *scene, sf_error *error);
 uint64_t sf_scene_hash(uint64_t hash, const void *bytes, size_t count);
 #define SF_LENGTH_LIMIT 1e12f   /* volumes, which Embree computes, stay finite */
 #define SF_RADIANCE_LIMIT 1e18f /* sums and products with weights stay finite */
+
+/* fog.c */
+static inline bool sf_foggy(const sf_scene *scene) { return scene->fog.scattering + scene->fog.absorption > 0; }
+sf_status sf_fog_check(const sf_scene *scene, sf_error *error);
+void sf_fog_tabulate(const sf_scene *scene, sf_mesh_table *table);
+
+/* recentre.c: moves a scene that lies far from the origin there. */
+sf_status sf_scene_recentre(sf_scene *scene, sf_error *error);
+
+/* A triangle whose edges have coordinates of at most `longest` is intersected with an error, along its
+ * normal, of some 2^-21 of them: Embree computes the distance of its plane from a corner. Measured on
+ * tilted triangles 1,000 to 10^6 times as long as the ray: 2^-20 leaves no self-intersection. */
+#define SF_LIFT_OF_EDGES 0x1p-20f
 
 /* material.c: how a surface of the material scatters. */
 sf_scatter sf_scatter_of(const sf_material *material);

@@ -91,8 +91,10 @@ static void later_radiance(sf_batch *b, const sf_scene *scene, uint32_t count) {
 
 /* Puts the vertex where the ray hit, with its normal on the ray's side, and moves it off the
  * surface along that normal by 2^-18 of what its coordinates were computed from: |origin| and
- * the distance. Their rounding, and that of Embree's own distance, is some 2^-22 of it. */
-static inline void place_vertex(sf_batch *b, uint32_t i) {
+ * the distance. Their rounding, and that of Embree's own distance, is some 2^-22 of it. `least` is
+ * the same for triangles far larger than these; where the scene is robust, `back` is 1 and the point
+ * is moved back along the ray too: what the ray has crossed lies on this side of all surfaces. */
+static inline void place_vertex(sf_batch *b, uint32_t i, float least, float back) {
     float nx = b->hit_normal[0][i], ny = b->hit_normal[1][i], nz = b->hit_normal[2][i];
     float dx = b->direction[0][i], dy = b->direction[1][i], dz = b->direction[2][i];
     float ox = b->origin[0][i], oy = b->origin[1][i], oz = b->origin[2][i], t = b->distance[i];
@@ -102,6 +104,8 @@ static inline void place_vertex(sf_batch *b, uint32_t i) {
     ny *= turn;
     nz *= turn;
     float lift = sf_lift(ox, oy, oz, t);
+    lift = lift > least ? lift : least;
+    t -= back * lift;
     b->point[0][i] = ox + t * dx + lift * nx;
     b->point[1][i] = oy + t * dy + lift * ny;
     b->point[2][i] = oz + t * dz + lift * nz;
@@ -112,7 +116,8 @@ static inline void place_vertex(sf_batch *b, uint32_t i) {
 
 static void place_vertices(sf_batch *b, const sf_scene *scene, uint32_t n) {
     look_up(&scene->mesh_table, SF_MESH_PASS_R, 3, b->mesh, n, b->albedo);
-    for (uint32_t i = 0; i < n; ++i) place_vertex(b, i);
+    look_up(&scene->mesh_table, SF_MESH_LIFT, 1, b->mesh, n, &b->gather);
+    for (uint32_t i = 0; i < n; ++i) place_vertex(b, i, b->gather[i], scene->back);
 }
 
 static void first_vertex(sf_batch *b, const sf_scene *scene) {
@@ -136,6 +141,21 @@ static void later_vertex(sf_batch *b, const sf_scene *scene, uint32_t count) {
         float g = b->throughput[1][i] *= b->albedo[1][i];
         float blue = b->throughput[2][i] *= b->albedo[2][i];
         b->alive[i] = r + g + blue > 0;
+    }
+}
+
+/* Arvo & Kirk 1990, "Particle Transport and Image Synthesis". The least probability, 1/32, bounds
+ * what the noise of a path can grow by. */
+static void roulette(sf_batch *b, uint32_t count) {
+    float (*u)[SF_PATHS] = sf_coordinates_by_ray(b, count, 1);
+    for (uint32_t i = 0; i < sf_whole_packets(count); ++i) {
+        float red = b->throughput[0][i], green = b->throughput[1][i], blue = b->throughput[2][i];
+        float q = red > green ? red : green;
+        q = q > blue ? q : blue;
+        q = q > 0x1p-5f ? q : 0x1p-5f;
+        q = q < 1 ? q : 1.0f;
+        b->alive[i] &= u[0][i] < q;
+        for (int c = 0; c < 3; ++c) b->throughput[c][i] *= 1 / q;
     }
 }
 
@@ -184,5 +204,5 @@ static void surface(sf_batch *b, uint32_t count) {
     }
 }
 
-const sf_shade_kernels SF_AT_LEVEL(sf_shade_kernels) = {first_radiance, later_radiance, first_vertex,
-                                                        later_vertex,   compact,        surface};
+const sf_shade_kernels SF_AT_LEVEL(sf_shade_kernels) = {first_radiance, later_radiance, first_vertex, later_vertex,
+                                                        roulette,       compact,        surface};

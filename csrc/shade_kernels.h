@@ -22,6 +22,10 @@ typedef struct sf_shade_kernels {
     void (*first_vertex)(sf_batch *batch, const sf_scene *scene);
     void (*later_vertex)(sf_batch *batch, const sf_scene *scene, uint32_t count);
 
+    /* Ends paths at their vertices by coordinate[0], with a probability in proportion to their
+     * throughput, and divides that of the others by it. */
+    void (*roulette)(sf_batch *batch, uint32_t count);
+
     /* Lists the living rays in `order`, then moves their vertices together. Returns how many. */
     uint32_t (*compact)(sf_batch *batch, uint32_t count);
 

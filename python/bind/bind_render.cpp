@@ -188,7 +188,7 @@ film_handle *render(const scene_handle &scene, uint32_t width, uint32_t height, 
                     uint32_t spp, uint32_t start, double relative_tolerance, double absolute_tolerance,
                     double confidence, uint32_t min_spp, uint32_t max_spp, uint64_t samples, double seconds,
                     const std::string &pattern, const std::string &pixel_filter, const std::string &stop, bool unbiased,
-                    const std::string &seeds, uint64_t seed, uint32_t threads, uint32_t tile_size,
+                    const std::string &seeds, uint64_t seed, uint32_t threads, uint32_t tile_size, uint32_t roulette,
                     const std::vector<std::string> &aovs, std::optional<pixel_mask> mask,
                     const std::optional<std::string> &checkpoint, double checkpoint_seconds, nb::object notice,
                     nb::object observer) {
@@ -214,6 +214,7 @@ film_handle *render(const scene_handle &scene, uint32_t width, uint32_t height, 
     options.seed = seed;
     options.threads = threads;
     options.tile_size = tile_size;
+    options.roulette = roulette;
     for (const std::string &name : aovs) options.aovs |= 1u << find("aovs", name, sf_aov_name);
     if (mask) set_mask(options, *mask);
     options.progress = on_progress;
@@ -297,8 +298,8 @@ void bind_render(nb::module_ &m) {
     m.def("render", &render, nb::rv_policy::take_ownership, "scene"_a, nb::kw_only(), "width"_a, "height"_a, "crop"_a,
           "spp"_a, "start"_a, "relative_tolerance"_a, "absolute_tolerance"_a, "confidence"_a, "min_spp"_a, "max_spp"_a,
           "samples"_a, "seconds"_a, "pattern"_a, "pixel_filter"_a, "stop"_a, "unbiased"_a, "seeds"_a, "seed"_a,
-          "threads"_a, "tile_size"_a, "aovs"_a, "mask"_a.none(), "checkpoint"_a.none(), "checkpoint_seconds"_a,
-          "notice"_a, "progress"_a.none());
+          "threads"_a, "tile_size"_a, "roulette"_a, "aovs"_a, "mask"_a.none(), "checkpoint"_a.none(),
+          "checkpoint_seconds"_a, "notice"_a, "progress"_a.none());
     m.def("load_film", &load_film, nb::rv_policy::take_ownership, "path"_a);
     m.def("merge_films", &merge_films, nb::rv_policy::take_ownership, "films"_a);
 }

@@ -273,6 +273,19 @@ void bind_scene(nb::module_ &m) {
             },
             "ratio"_a)
         .def(
+            "set_fog",
+            [](scene_handle &self, double scattering, double absorption, double g) {
+                sf_fog fog = {static_cast<float>(scattering), static_cast<float>(absorption), static_cast<float>(g)};
+                call([&](sf_error *error) { return sf_scene_set_fog(self.scene, &fog, error); });
+            },
+            "scattering"_a, "absorption"_a, "g"_a)
+        .def(
+            "set_robust",
+            [](scene_handle &self, bool robust) {
+                call([&](sf_error *error) { return sf_scene_set_robust(self.scene, robust, error); });
+            },
+            "robust"_a)
+        .def(
             "set_camera",
             [](scene_handle &self, const vector3 &position, const vector3 &target, const vector3 &up,
                double vertical_fov, double aperture_radius, double focus_distance) {

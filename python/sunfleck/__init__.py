@@ -30,6 +30,7 @@ from sunfleck.estimate import (
     VectorMoments,
     WeightedMoments,
 )
+from sunfleck.fog import Fog
 from sunfleck.gallery import gallery
 from sunfleck.integrate import Integral, IntegralLook, integrate
 from sunfleck.load import load
@@ -80,6 +81,7 @@ __all__ = [
     "Disk",
     "Environment",
     "Error",
+    "Fog",
     "Image",
     "Integral",
     "IntegralLook",

@@ -46,6 +46,13 @@ def vector(name: str, value: Any) -> Vector:
     return float(x), float(y), float(z)
 
 
+def flag(name: str, value: object) -> bool:
+    """True or False, NumPy's too; other values are mistakes."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise TypeError(f"{name} is {value!r}; give True or False")
+    return bool(value)
+
+
 def number(name: str, value: Any) -> float:
     """A real number, as a float; strings and arrays are refused."""
     if isinstance(value, (bool, str, bytes)):

@@ -187,6 +187,10 @@ typedef struct sf_render_options {
     double checkpoint_seconds;   /* between writes while the render runs, 0 .. 1e9; default 30 */
     sf_notice_fn notice;         /* default NULL */
     void *notice_user;
+    uint32_t roulette; /* bounce from which on paths end by Russian roulette, 2 .. SF_MAX_BOUNCES; 0: they don't
+                          (default). At each such vertex a path goes on with the probability of its throughput's
+                          largest channel, 1/32 at least and 1 at most, by which it is divided: the mean stays.
+                          Takes a sample dimension at each; costs nothing where it is 0 */
 } sf_render_options;
 
 sf_render_options sf_render_options_default(void);

@@ -24,7 +24,8 @@ typedef struct sf_scene sf_scene;
  *
  * The arrays stay the caller's: they must neither change nor go before the scene is destroyed.
  * Embree reads them in place. It may read 4 bytes past the last vertex; where those could lie
- * on another memory page (1 array in 1,000), the scene makes one copy instead, and
+ * on another memory page (1 array in 1,000), the scene makes one copy instead, as of the vertices of
+ * a scene farther from the origin than 4 times its size, which is traced near it;
  * sf_scene_info.copied_bytes says how much. */
 typedef struct sf_mesh {
     const float *vertices;     /* vertex_count * 3, finite, |coordinate| <= 1e12 */
@@ -89,6 +90,17 @@ typedef struct sf_environment {
 } sf_environment;
 sf_environment sf_environment_default(void);
 
+/* Homogeneous fog, which fills all space, solids too. It takes exp(-(scattering + absorption) distance)
+ * of light from a ray's path and scatters its part in other directions, by Henyey and Greenstein's
+ * phase function. The same for all colours. A vertex in it counts as a bounce. */
+typedef struct sf_fog {
+    float scattering; /* per unit of length, 0 .. 1e12; default 0 */
+    float absorption; /* the same */
+    float g;          /* the mean cosine of scattering, -0.99 .. 0.99: 0 is isotropic (default), positive forwards */
+} sf_fog;
+sf_fog sf_fog_default(void); /* none */
+#define SF_FOG_LIMIT 1e12f
+
 /* How light that can be sampled is found. All three have the same mean; for tests and study. */
 typedef enum sf_light_sampling {
     SF_LIGHT_SAMPLING_BOTH = 0, /* by light and by surface sampling, weighted; the default */
@@ -136,10 +148,20 @@ sf_status sf_scene_set_environment(sf_scene *scene, const sf_environment *enviro
 
 sf_status sf_scene_set_light_sampling(sf_scene *scene, sf_light_sampling sampling, sf_error *error);
 
+/* NULL takes it away; so does a fog of 0. A scene that has both fog and a background, suns or an
+ * environment is refused when it is committed: nothing of them would come through. */
+sf_status sf_scene_set_fog(sf_scene *scene, const sf_fog *fog, sf_error *error);
+
 /* Triangle and rectangle lights are sampled by solid angle from points nearer to their middle than
  * `ratio` of their diagonals, and by area from all others. 0 .. infinity; default 1; 0 is always by
  * area. A scene none of whose 16 largest lights has a surface so near has no such stage. */
 sf_status sf_scene_set_solid_angle_ratio(sf_scene *scene, float ratio, sf_error *error);
+
+/* Not 0: no ray passes between triangles that share an edge. Embree intersects by its watertight test
+ * (Woop, Benthin, Wald 2013), and hits are moved back along their rays as well as off the surface.
+ * Default 0: of rays within a closed box about 1 in 10^7 escapes, and more where triangles are smaller;
+ * the price of robust is in docs/scene.md. */
+sf_status sf_scene_set_robust(sf_scene *scene, int robust, sf_error *error);
 
 sf_status sf_scene_set_camera(sf_scene *scene, const sf_camera *camera, sf_error *error);
 
@@ -180,7 +202,8 @@ typedef enum sf_dimension_use {
     SF_DIMENSION_LIGHT,     /* 2: point on the light, for the vertex `bounce` */
     SF_DIMENSION_CHOICE,    /* 1: which light, for the vertex `bounce` */
     SF_DIMENSION_SURFACE,   /* 2: direction off the surface, at the vertex `bounce` */
-    SF_DIMENSION_LOBE       /* 1: reflection or refraction, at the vertex `bounce` */
+    SF_DIMENSION_LOBE,      /* 1: reflection or refraction, at the vertex `bounce` */
+    SF_DIMENSION_FOG        /* 1: how far the ray from the vertex `bounce` goes in fog; 0: the camera's */
 } sf_dimension_use;
 
 typedef struct sf_plan_dimensions {
@@ -196,6 +219,7 @@ typedef enum sf_stage {
     SF_STAGE_LENS,         /* camera rays: thin lens, instead of the pinhole's */
     SF_STAGE_INTERSECT,    /* nearest hits of camera rays */
     SF_STAGE_ROUND,        /* points and normals of spheres and disks */
+    SF_STAGE_FOG,          /* how far rays go in fog; what it leaves of sampled light */
     SF_STAGE_MISS,         /* background radiance for rays that hit nothing */
     SF_STAGE_SKY,          /* radiance of suns and the environment for rays that hit nothing */
     SF_STAGE_EMISSION,     /* radiance of emissive surfaces that rays hit */
@@ -216,7 +240,7 @@ typedef enum sf_stage {
 const char *sf_stage_name(sf_stage stage);
 const char *sf_dimension_use_name(sf_dimension_use use);
 
-#define SF_PLAN_MAX_GROUPS (2 + 4 * SF_MAX_BOUNCES)
+#define SF_PLAN_MAX_GROUPS (3 + 5 * SF_MAX_BOUNCES)
 
 /* What a scene turned out to need, and what the renderer runs: nothing else. */
 typedef struct sf_plan {
