@@ -3,10 +3,12 @@
 
 #include "coordinates.h"
 
+#include <assert.h>
 #include <stdbool.h>
 #include <string.h>
 
 #include "error.h"
+#include "halton.h"
 
 /* Sums a matrix over the bytes of the index, in reversed bits. */
 static void tabulate_sobol(uint32_t dimension, uint32_t table[4][256]) {
@@ -51,6 +53,17 @@ static void assign_sources(sf_coordinates *coordinates, const sf_plan *plan) {
     }
 }
 
+/* The path's dimensions are those of the groups, one after another. */
+static void assign_primes(sf_coordinates *coordinates, uint32_t groups) {
+    uint32_t dimension = 0, prime = sf_next_prime(0);
+    for (uint32_t g = 0; g < groups; ++g) {
+        sf_coordinate_source *source = coordinates->sources + g;
+        assert(source->first == dimension);
+        for (uint32_t d = 0; d < source->count; ++d, ++dimension, prime = sf_next_prime(prime))
+            source->primes[d] = prime;
+    }
+}
+
 static sf_status choose_cells(sf_coordinates *coordinates, uint32_t spp, sf_error *error) {
     bool uniform = coordinates->pattern == SF_PATTERN_UNIFORM;
     if (!uniform && coordinates->pattern != SF_PATTERN_JITTERED) return SF_STATUS_OK;
@@ -76,6 +89,7 @@ sf_status sf_coordinates_init(sf_coordinates *coordinates, sf_pattern pattern, c
     coordinates->pattern = pattern;
     coordinates->seed = seed;
     assign_sources(coordinates, plan);
+    if (pattern == SF_PATTERN_HALTON) assign_primes(coordinates, plan->dimension_group_count);
     if (pattern == SF_PATTERN_SOBOL)
         for (uint32_t d = 0; d < SF_SET_DIMENSIONS; ++d) tabulate_sobol(d, coordinates->sobol[d]);
     return choose_cells(coordinates, spp, error);

@@ -37,6 +37,7 @@ typedef struct sf_coordinate_source {
     uint32_t dimension; /* the first, within the set */
     uint32_t first;     /* the first, within the path: what patterns without sets go by */
     uint32_t count;     /* 1 or 2 */
+    uint32_t primes[2]; /* halton: the bases */
 } sf_coordinate_source;
 
 /* Light 0 1, then pixel, lens or surface 2 3, then choice 4, lobe 5, roulette 6, fog 7. */

@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 
+#include "coordinates_halton_kernels.h"
 #include "platform.h"
 
 /* The key of a set of dimensions in one block, and from it of each dimension. */
@@ -119,22 +120,12 @@ static void fill_cells(const sf_coordinates *coordinates, const sf_coordinate_so
     }
 }
 
-/* ---- halton ---- */
-
-static void fill_halton(const sf_coordinate_source *source, const sf_block *blocks, uint32_t block_count,
-                        float (*SF_RESTRICT out)[SF_PATHS]) {
-    for (uint32_t b = 0; b < block_count; ++b)
-        for (uint32_t d = 0; d < source->count; ++d)
-            for (uint32_t l = 0; l < SF_LANES; ++l)
-                out[d][SF_LANES * b + l] = sf_halton_sample(blocks[b].base + l, source->first + d, blocks[b].key);
-}
-
 static void fill(const sf_coordinates *coordinates, const sf_coordinate_source *source, const sf_block *blocks,
                  uint32_t block_count, float (*out)[SF_PATHS]) {
     switch (coordinates->pattern) {
         case SF_PATTERN_UNIFORM:
         case SF_PATTERN_JITTERED: fill_cells(coordinates, source, blocks, block_count, out); break;
-        case SF_PATTERN_HALTON: fill_halton(source, blocks, block_count, out); break;
+        case SF_PATTERN_HALTON: SF_AT_LEVEL(sf_coordinates_halton_kernels).fill(source, blocks, block_count, out); break;
         case SF_PATTERN_SOBOL: fill_sobol(coordinates, source, blocks, block_count, out); break;
         default: fill_random(source, blocks, block_count, out); break;
     }

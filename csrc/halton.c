@@ -71,31 +71,17 @@ sf_halton_axis sf_halton_axis_make(uint32_t base, uint32_t dimension, sf_scrambl
     return axis;
 }
 
-/* A mix of 0 .. base - 1 by an invertible hash on the next power of two, walked until it lands
- * inside (Kensler 2013, "Correlated Multi-Jittered Sampling", section 3, takes this way). */
 uint32_t sf_halton_mix(uint32_t digit, uint32_t base, uint64_t key) {
     uint32_t mask = base - 1;
     for (int shift = 1; shift < 32; shift *= 2) mask |= mask >> shift;
-    uint32_t a = (uint32_t)key | 1, b = (uint32_t)(key >> 32) | 1;
-    do {
-        digit = (digit * a + (uint32_t)(key >> 40)) & mask;
-        digit ^= digit >> 2 ^ digit >> 5;
-        digit = digit * b & mask;
-        digit ^= digit >> 1 ^ digit >> 7;
-    } while (digit >= base);
+    do digit = sf_halton_mix_step(digit, mask, key);
+    while (digit >= base);
     return digit;
 }
 
-/* The permutation of a place: a random affine map after a mix. Affine maps of a prime field take
- * every pair of digits to every other pair equally often, as all permutations together do, so
- * that the variance of a mean is that of fully random permutations; the mix removes the lines
- * that affine maps alone would leave among the points of large bases. */
 static uint32_t permute_digit(const sf_halton_axis *axis, unsigned place, uint32_t digit) {
     uint64_t key = sf_hash64(axis->key, place);
-    uint32_t factor = 1 + (uint32_t)((key & 0xffffffffu) * (axis->base - 1) >> 32);
-    uint32_t offset = (uint32_t)((key >> 32) * axis->base >> 32);
-    uint64_t mixed = sf_halton_mix(digit, axis->base, sf_mix64(key));
-    return (uint32_t)((mixed * factor + offset) % axis->base);
+    return sf_halton_affine(sf_halton_mix(digit, axis->base, sf_mix64(key)), axis->base, key) % axis->base;
 }
 
 uint32_t sf_halton_digit(const sf_halton_axis *axis, unsigned place, uint32_t digit) {

@@ -7,6 +7,30 @@
 
 #include "level.h"
 
+/* ---- permuted digits ----
+ *
+ * The permutation of a place: a random affine map after a mix. Affine maps of a prime field take
+ * every pair of digits to every other pair equally often, as all permutations together do, so
+ * that the variance of a mean is that of fully random permutations; the mix removes the lines
+ * that affine maps alone would leave among the points of large bases. */
+
+/* A mix of 0 .. base - 1: an invertible hash on the next power of two, mask + 1, walked until it
+ * lands below the base (Kensler 2013, "Correlated Multi-Jittered Sampling", section 3, takes this
+ * way). A step of it. */
+static inline uint32_t sf_halton_mix_step(uint32_t digit, uint32_t mask, uint64_t key) {
+    digit = (digit * ((uint32_t)key | 1) + (uint32_t)(key >> 40)) & mask;
+    digit ^= digit >> 2 ^ digit >> 5;
+    digit = digit * ((uint32_t)(key >> 32) | 1) & mask;
+    return digit ^ digit >> 1 ^ digit >> 7;
+}
+
+/* The affine map by the place's key, still to be taken modulo the base. */
+static inline uint32_t sf_halton_affine(uint32_t mixed, uint32_t base, uint64_t key) {
+    uint32_t factor = 1 + (uint32_t)((key & 0xffffffffu) * (base - 1) >> 32);
+    uint32_t offset = (uint32_t)((key >> 32) * base >> 32);
+    return mixed * factor + offset; /* at most (base - 1)^2 + base - 1, and base < 2^16 */
+}
+
 /* ---- rounding ---- */
 
 /* floor(fraction / 2^64 * cells), exactly. */

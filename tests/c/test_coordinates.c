@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* coordinates: the renderer's blocks of Halton's points are the stateless ones, bit for bit, at
+ * every instruction-set level; the patterns that can be rendered with. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+/* cmocka.h needs those. */
+#include <cmocka.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "coordinates_kernels.h"
+#include "sunfleck/render.h"
+
+enum { GROUPS = SF_PLAN_MAX_GROUPS };
+
+static sf_coordinates coordinates;
+static float made[2][SF_PATHS], expected[2][SF_PATHS];
+
+/* As long a path as there is: of each bounce a light, a surface, a choice and a lobe. */
+static void prepare(void) {
+    sf_plan plan;
+    sf_error error;
+    memset(&plan, 0, sizeof plan);
+    for (uint32_t g = 0; g < GROUPS; ++g) {
+        uint32_t count = g % 4 < 2 ? 2 : 1;
+        plan.dimensions[g] = (sf_plan_dimensions){
+            .use = SF_DIMENSION_LIGHT, .bounce = 1 + g / 4, .first = plan.dimensions_per_path, .count = count};
+        plan.dimensions_per_path += count;
+    }
+    plan.dimension_group_count = GROUPS;
+    assert_int_equal(sf_coordinates_init(&coordinates, SF_PATTERN_HALTON, &plan, 0, 1, &error), SF_STATUS_OK);
+}
+
+static void expect_stateless(uint32_t group, const sf_block blocks[SF_BLOCKS]) {
+    const sf_coordinate_source *source = coordinates.sources + group;
+    for (uint32_t d = 0; d < source->count; ++d)
+        for (uint32_t i = 0; i < SF_BLOCKS * SF_LANES; ++i)
+            expected[d][i] = sf_halton_sample(blocks[i / SF_LANES].base + i % SF_LANES, source->first + d,
+                                              blocks[i / SF_LANES].key);
+    for (int isa = SF_ISA_BASELINE; isa <= (int)sf_isa_active(); ++isa) {
+        sf_coordinates_kernels_at((sf_isa)isa)->fill(&coordinates, source, blocks, SF_BLOCKS, made);
+        for (uint32_t d = 0; d < source->count; ++d)
+            for (uint32_t i = 0; i < SF_BLOCKS * SF_LANES; ++i)
+                if (memcmp(made[d] + i, expected[d] + i, sizeof(float)) != 0)
+                    fail_msg("level %d, dimension %u, index %u, key %llx: %a, not %a", isa, source->first + d,
+                             blocks[i / SF_LANES].base + i % SF_LANES, (unsigned long long)blocks[i / SF_LANES].key,
+                             made[d][i], expected[d][i]);
+    }
+}
+
+/* Where digits carry: around powers of the base, about 2^31, at both ends of the indices; and
+ * anywhere, from few digits to all. */
+static void choose_blocks(uint32_t group, uint64_t seed, sf_block blocks[SF_BLOCKS]) {
+    static const uint32_t bases[] = {0,           16,          0x7fffffe0u, 0x7ffffff0u, 0x80000000u,
+                                     0x80000010u, 0xffffffe0u, 0xfffffff0u, 0xfffffff0u, 1024};
+    uint64_t power = coordinates.sources[group].primes[0];
+    for (uint32_t b = 0; b < SF_BLOCKS; ++b) {
+        uint64_t hash = sf_hash64(seed, b);
+        uint32_t base = (uint32_t)(hash >> (32 + b % 32));
+        if (b < sizeof bases / sizeof *bases) {
+            base = bases[b];
+        } else if (b < 32 && power <= UINT32_MAX) {
+            base = (uint32_t)power - (b % 2) * 16; /* the power lies in this block, or ends the one before */
+            if (b % 2) power *= coordinates.sources[group].primes[0];
+        }
+        blocks[b] = (sf_block){.key = sf_mix64(hash), .base = base & ~15u};
+    }
+    blocks[40].key = 0;
+    blocks[41].key = UINT64_MAX;
+}
+
+/* Of the first ten groups, bases 2 to 47, 25 sets of keys. The kernel's bounds are 1 / power apart,
+ * the first power of the base from 2^36 on, and a coordinate's word changes at 2^24 borders of
+ * floats and at up to as many of intervals: one coordinate in 3,025 (base 3) to 48,184 (base 31)
+ * is left to the exact sum, by which some 56 of these are to be expected. */
+static void test_halton_is_the_stateless_one(void **state) {
+    (void)state;
+    sf_block blocks[SF_BLOCKS];
+    prepare();
+    for (uint32_t group = 0; group < GROUPS; ++group)
+        for (uint64_t set = 0; set < (group < 10 ? 24 / TEST_STRIDE + 1 : 1); ++set) {
+            choose_blocks(group, sf_hash64(group, set), blocks);
+            expect_stateless(group, blocks);
+        }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_halton_is_the_stateless_one),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
