@@ -5,10 +5,12 @@
 
 #include <assert.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "error.h"
 #include "halton.h"
+#include "sunfleck/render.h"
 
 /* Sums a matrix over the bytes of the index, in reversed bits. */
 static void tabulate_sobol(uint32_t dimension, uint32_t table[4][256]) {
@@ -74,17 +76,26 @@ static sf_status choose_cells(sf_coordinates *coordinates, uint32_t spp, sf_erro
     return sf_grid_sides(coordinates->cells, 2, coordinates->sides, error);
 }
 
-static bool can_render(sf_pattern pattern) {
+int sf_render_takes_pattern(sf_pattern pattern) {
     return pattern == SF_PATTERN_UNIFORM || pattern == SF_PATTERN_RANDOM || pattern == SF_PATTERN_JITTERED ||
            pattern == SF_PATTERN_HALTON || pattern == SF_PATTERN_SOBOL;
 }
 
+static sf_status refuse_pattern(sf_pattern pattern, sf_error *error) {
+    char names[256] = "";
+    size_t length = 0;
+    const char *name = sf_pattern_name(pattern);
+    for (int p = 0; sf_pattern_name((sf_pattern)p) && length < sizeof names; ++p)
+        if (sf_render_takes_pattern((sf_pattern)p))
+            length += (size_t)snprintf(names + length, sizeof names - length, "%s%s", length ? ", " : "",
+                                       sf_pattern_name((sf_pattern)p));
+    return sf_fail(error, SF_STATUS_INVALID_VALUE, "pattern %s can't be rendered with; choose one of %s",
+                   name ? name : "?", names);
+}
+
 sf_status sf_coordinates_init(sf_coordinates *coordinates, sf_pattern pattern, const sf_plan *plan, uint32_t spp,
                               uint64_t seed, sf_error *error) {
-    if (!can_render(pattern))
-        return sf_fail(error, SF_STATUS_INVALID_VALUE,
-                       "pattern %s can't be rendered with; choose uniform, random, jittered, halton or sobol",
-                       sf_pattern_name(pattern) ? sf_pattern_name(pattern) : "?");
+    if (!sf_render_takes_pattern(pattern)) return refuse_pattern(pattern, error);
     memset(coordinates, 0, sizeof *coordinates);
     coordinates->pattern = pattern;
     coordinates->seed = seed;

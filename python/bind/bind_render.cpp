@@ -281,6 +281,13 @@ void bind_render(nb::module_ &m) {
         return names;
     });
 
+    m.def("render_patterns", [] {
+        nb::typed<nb::list, nb::str> names;
+        for (int k = 0; const char *name = sf_pattern_name(static_cast<sf_pattern>(k)); ++k)
+            if (sf_render_takes_pattern(static_cast<sf_pattern>(k))) names.append(name);
+        return names;
+    });
+
     m.def("pixel_filters", [] {
         nb::typed<nb::list, nb::str> names;
         for (int k = 0; const char *name = sf_pixel_filter_name(static_cast<sf_pixel_filter>(k)); ++k)

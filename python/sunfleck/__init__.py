@@ -37,7 +37,7 @@ from sunfleck.load import load
 from sunfleck.mapping import MAPPINGS
 from sunfleck.material import Conductor, Dielectric, Mirror
 from sunfleck.points import PATTERNS, SCRAMBLES, points, valid_counts
-from sunfleck.render import AOVS, PIXEL_FILTERS, STOP_REASONS, Image, Progress, Summary, merge, render
+from sunfleck.render import AOVS, PIXEL_FILTERS, RENDER_PATTERNS, STOP_REASONS, Image, Progress, Summary, merge, render
 from sunfleck.rng import RNGS, Rng
 from sunfleck.scene import Camera, Mesh, Plan, PlanDimensions, Scene, SceneInfo
 from sunfleck.shapes import Disk, Sphere
@@ -67,6 +67,7 @@ __all__ = [
     "MAPPINGS",
     "PATTERNS",
     "PIXEL_FILTERS",
+    "RENDER_PATTERNS",
     "RNGS",
     "SCRAMBLES",
     "STOP_REASONS",

@@ -26,13 +26,16 @@ from sunfleck.image import png_bytes, write_channels, write_false_color
 from sunfleck.scene import Scene
 from sunfleck.tolerance import Tolerance
 
-__all__ = ["AOVS", "PIXEL_FILTERS", "STOP_REASONS", "Image", "Progress", "Summary", "merge", "render"]
+__all__ = ["AOVS", "PIXEL_FILTERS", "RENDER_PATTERNS", "STOP_REASONS", "Image", "Progress", "Summary", "merge", "render"]
 
 STOP_REASONS: tuple[str, ...] = tuple(_core.stop_reasons())
 """The names of the numbers in `Image.stop_reason`."""
 
 AOVS: tuple[str, ...] = tuple(_core.aov_names())
 """What an image can hold beside the colours; see `render`."""
+
+RENDER_PATTERNS: tuple[str, ...] = tuple(_core.render_patterns())
+"""The patterns that a picture can be rendered with."""
 
 PIXEL_FILTERS: tuple[str, ...] = tuple(_core.pixel_filters())
 """What a pixel can average over: the mappings pixel_NAME; see `render`."""
@@ -414,7 +417,7 @@ def render(
     seconds : float, optional
         A time limit. Alone it is a budget, spent likewise.
     pattern : str
-        One of `sunfleck.PATTERNS`.
+        One of `sunfleck.RENDER_PATTERNS`.
     pixel_filter : str
         What a pixel averages over, one of `sunfleck.PIXEL_FILTERS`: "box" (itself), "tent" (two
         pixels' width), "gaussian" (sigma 0.4 pixel), "gaussian_truncated" (the same within 1.5

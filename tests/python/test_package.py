@@ -38,6 +38,7 @@ def test_every_public_name_exists_and_is_documented() -> None:
             "MAPPINGS",
             "PATTERNS",
             "PIXEL_FILTERS",
+            "RENDER_PATTERNS",
             "RNGS",
             "SCRAMBLES",
             "STOP_REASONS",

@@ -525,6 +525,7 @@ def test_ctrl_c_returns_the_partial_picture_within_half_a_second(size: int, opti
         ({"seconds": -1}, ValueError, "seconds is -1"),
         ({"seconds": np.nan}, ValueError, "seconds"),
         ({"pattern": "sobel"}, ValueError, "sobel.*sobol"),
+        ({"pattern": "lattice"}, ValueError, f"lattice.*{', '.join(sf.RENDER_PATTERNS)}$"),
         ({"pattern": None}, TypeError, "pattern"),
         ({"pixel_filter": "sinc"}, ValueError, "sinc.*box, tent, gaussian.*lanczos"),
         ({"stop": "never"}, ValueError, "never.*standard-error"),

@@ -84,6 +84,9 @@ const char *sf_stop_rule_name(sf_stop_rule rule);
 const char *sf_seed_policy_name(sf_seed_policy policy);
 const char *sf_stop_reason_name(sf_stop_reason reason);
 
+/* Whether the renderer takes the pattern: not 0 for uniform, random, jittered, halton and sobol. */
+int sf_render_takes_pattern(sf_pattern pattern);
+
 /* What a film can hold beside the colours, where it is asked for: arbitrary output variables.
  *
  * Albedo, normal and depth are of the camera rays' first hits, averaged over every sample of the
@@ -151,7 +154,7 @@ typedef struct sf_render_options {
                                      (default); at least one a pixel */
     double seconds;               /* time limit, > 0; 0: none (default). Alone it is a budget, spent as
                                      `samples` is */
-    sf_pattern pattern;           /* uniform, random, jittered, halton, sobol (default) */
+    sf_pattern pattern;           /* one that sf_render_takes_pattern; default sobol */
     sf_pixel_filter pixel_filter; /* default box */
     sf_stop_rule stop;            /* default dyadic */
     uint32_t unbiased;            /* not 0: two stages (Kirk and Arvo 1991). A pilot decides each pixel's
