@@ -125,7 +125,9 @@ static void fill(const sf_coordinates *coordinates, const sf_coordinate_source *
     switch (coordinates->pattern) {
         case SF_PATTERN_UNIFORM:
         case SF_PATTERN_JITTERED: fill_cells(coordinates, source, blocks, block_count, out); break;
-        case SF_PATTERN_HALTON: SF_AT_LEVEL(sf_coordinates_halton_kernels).fill(source, blocks, block_count, out); break;
+        case SF_PATTERN_HALTON:
+            SF_AT_LEVEL(sf_coordinates_halton_kernels).fill(source, blocks, block_count, out);
+            break;
         case SF_PATTERN_SOBOL: fill_sobol(coordinates, source, blocks, block_count, out); break;
         default: fill_random(source, blocks, block_count, out); break;
     }

@@ -26,7 +26,17 @@ from sunfleck.image import png_bytes, write_channels, write_false_color
 from sunfleck.scene import Scene
 from sunfleck.tolerance import Tolerance
 
-__all__ = ["AOVS", "PIXEL_FILTERS", "RENDER_PATTERNS", "STOP_REASONS", "Image", "Progress", "Summary", "merge", "render"]
+__all__ = [
+    "AOVS",
+    "PIXEL_FILTERS",
+    "RENDER_PATTERNS",
+    "STOP_REASONS",
+    "Image",
+    "Progress",
+    "Summary",
+    "merge",
+    "render",
+]
 
 STOP_REASONS: tuple[str, ...] = tuple(_core.stop_reasons())
 """The names of the numbers in `Image.stop_reason`."""

@@ -39,8 +39,8 @@ static void expect_stateless(uint32_t group, const sf_block blocks[SF_BLOCKS]) {
     const sf_coordinate_source *source = coordinates.sources + group;
     for (uint32_t d = 0; d < source->count; ++d)
         for (uint32_t i = 0; i < SF_BLOCKS * SF_LANES; ++i)
-            expected[d][i] = sf_halton_sample(blocks[i / SF_LANES].base + i % SF_LANES, source->first + d,
-                                              blocks[i / SF_LANES].key);
+            expected[d][i] =
+                sf_halton_sample(blocks[i / SF_LANES].base + i % SF_LANES, source->first + d, blocks[i / SF_LANES].key);
     for (int isa = SF_ISA_BASELINE; isa <= (int)sf_isa_active(); ++isa) {
         sf_coordinates_kernels_at((sf_isa)isa)->fill(&coordinates, source, blocks, SF_BLOCKS, made);
         for (uint32_t d = 0; d < source->count; ++d)

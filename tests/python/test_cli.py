@@ -176,7 +176,18 @@ def test_plan() -> None:
     ("arguments", "words"),
     [
         (["--help"], ["render", "points", "plan", "examples:"]),
-        (["render", "--help"], [", ".join(sf.RENDER_PATTERNS), "examples:", "--tolerance", "--crop", "Ctrl-C", "penumbra, defocus, cornell", ".glb"]),
+        (
+            ["render", "--help"],
+            [
+                ", ".join(sf.RENDER_PATTERNS),
+                "examples:",
+                "--tolerance",
+                "--crop",
+                "Ctrl-C",
+                "penumbra, defocus, cornell",
+                ".glb",
+            ],
+        ),
         (["points", "--help"], ["examples:", "--pad", "--start", "--total", *sf.SCRAMBLES, *sf.PATTERNS]),
         (["plan", "--help"], ["examples:"]),
         (["--version"], [f"sunfleck {sf.__version__}"]),
