@@ -36,6 +36,8 @@ from measure import ROOT, describe_build, describe_machine
 from numpy.typing import NDArray
 
 import sunfleck as sf
+from sunfleck.figure import Panel, Series, draw_panels, save
+from sunfleck.provenance import provenance
 
 SIZE = 128
 FIRST, MOST = 32, 4096
@@ -154,6 +156,56 @@ def judge(stopped: list[Stopped], truth: Array, needed: Array, tolerance: float)
     }
 
 
+def tell(row: dict[str, float | str]) -> str:
+    return (
+        "{scene:9} {pattern:8} {rule:16} {tolerance:<5} {coverage:.3f} ({hard_coverage:.3f})"
+        "    {within:.3f} ({hard_within:.3f})  {cost:5.2f}  {met:.3f}  {bias:+.1f}"
+    ).format(**row)
+
+
+def measure(name: str, args: argparse.Namespace) -> Iterator[dict[str, float | str]]:
+    """A row for each pattern, tolerance and rule."""
+    scene = getattr(sf.scenes, name)()
+    truth, source = truth_of(name, scene, args.truth_spp)
+    print(f"{name}: {source}; {args.seeds} seeds")
+    for pattern in args.patterns:
+        records = [record(scene, pattern, seed) for seed in range(args.seeds)]
+        variances = true_variances(records, truth)
+        for tolerance in TOLERANCES[name]:
+            absolute = tolerance * truth.mean()
+            needed = oracle_samples(variances, absolute)
+            for rule in args.rules:
+                if rule == "half-buffer":
+                    stopped = [replay_half_buffer(r, absolute) for r in records]
+                else:
+                    stopped = [run_rule(scene, tolerance, pattern, rule, seed) for seed in range(args.seeds)]
+                got = judge(stopped, truth, needed, absolute)
+                yield {"scene": name, "pattern": pattern, "rule": rule, "tolerance": tolerance, **got}
+
+
+def draw(rows: list[dict[str, float | str]], path: Path) -> None:
+    """Coverage of the hard pixels against the cost, a panel for each pattern."""
+    panels = []
+    for pattern in ("sobol", "random"):
+        series = []
+        for rule in dict.fromkeys(str(row["rule"]) for row in rows):
+            chosen = [row for row in rows if row["rule"] == rule and row["pattern"] == pattern]
+            x, y = ([float(row[key]) for row in chosen] for key in ("cost", "hard_coverage"))
+            series.append(Series(rule, x, y, line=False, marker_size=5))
+        ends = [min(float(row["cost"]) for row in rows), max(float(row["cost"]) for row in rows)]
+        series.append(Series("0.95 asked", ends, [0.95, 0.95], style="guide"))
+        panels.append(
+            Panel(
+                f"{pattern}: penumbra, defocus, cornell, three tolerances",
+                "samples over the oracle's",
+                "share of the hard pixels within the half-width",
+                series,
+                y_log=False,
+            )
+        )
+    save(draw_panels(panels, provenance(range(20))), path)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scenes", nargs="*", default=list(TOLERANCES), metavar="SCENE", help="default: all four")
@@ -162,38 +214,21 @@ def main() -> None:
     parser.add_argument("--rules", nargs="*", default=["dyadic", "half-buffer", "standard-error"])
     parser.add_argument("--truth-spp", type=int, default=65536, help="of a reference of our own (default 65536)")
     parser.add_argument("-o", "--output", type=Path, default=ROOT / "build/coverage.json")
+    parser.add_argument("--draw", type=Path, metavar="FILE", help="draw what --output holds, and measure nothing")
     args = parser.parse_args()
-
+    if args.draw:
+        draw([row for row in json.loads(args.output.read_text()) if row["scene"] != "keyhole"], args.draw)
+        return
     print(describe_machine())
     print(describe_build())
-    rows = []
     print("scene     pattern  rule             tol   coverage (hard)  within (hard)  cost   met    bias")
+    args.output.parent.mkdir(parents=True, exist_ok=True)
+    rows = []
     for name in args.scenes:
-        scene = getattr(sf.scenes, name)()
-        truth, source = truth_of(name, scene, args.truth_spp)
-        print(f"{name}: {source}; {args.seeds} seeds")
-        for pattern in args.patterns:
-            records = [record(scene, pattern, seed) for seed in range(args.seeds)]
-            variances = true_variances(records, truth)
-            for tolerance in TOLERANCES[name]:
-                absolute = tolerance * truth.mean()
-                needed = oracle_samples(variances, absolute)
-                for rule in args.rules:
-                    if rule == "half-buffer":
-                        stopped = [replay_half_buffer(r, absolute) for r in records]
-                    else:
-                        stopped = [run_rule(scene, tolerance, pattern, rule, seed) for seed in range(args.seeds)]
-                    got = judge(stopped, truth, needed, absolute)
-                    rows.append({"scene": name, "pattern": pattern, "rule": rule, "tolerance": tolerance, **got})
-                    print(
-                        f"{name:9} {pattern:8} {rule:16} {tolerance:<5}"
-                        f" {got['coverage']:.3f} ({got['hard_coverage']:.3f})"
-                        f"    {got['within']:.3f} ({got['hard_within']:.3f})  {got['cost']:5.2f}  {got['met']:.3f}"
-                        f"  {got['bias']:+.1f}",
-                        flush=True,
-                    )
-                    args.output.parent.mkdir(parents=True, exist_ok=True)
-                    args.output.write_text(json.dumps(rows, indent=1))
+        for row in measure(name, args):
+            rows.append(row)
+            print(tell(row), flush=True)
+            args.output.write_text(json.dumps(rows, indent=1))
 
 
 if __name__ == "__main__":
