@@ -125,5 +125,14 @@ $(MITSUBA_PYTHON):
 	$(PYTHON) -m venv build/mitsuba
 	$(MITSUBA_PYTHON) -m pip install -q mitsuba
 
+# Cycles (Blender as a module) and LuxCore, for bench-peers; each where pip finds a wheel for this Python.
+build/cycles/bin/python:
+	$(PYTHON) -m venv build/cycles
+	build/cycles/bin/python -m pip install -q bpy || echo "note: bpy does not install here; Cycles is left out" >&2
+
+build/luxcore/bin/python:
+	$(PYTHON) -m venv build/luxcore
+	build/luxcore/bin/python -m pip install -q pyluxcore numpy || echo "note: pyluxcore does not install here; LuxCore is left out" >&2
+
 build/reference/%_256.npy: | packages-bench .venv/.demo $(MITSUBA_PYTHON)
 	$(with_mitsuba) bench/reference.py $*

@@ -22,12 +22,13 @@ from __future__ import annotations
 import argparse
 import time
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import mitsuba as mi
 import numpy as np
 
-import sunfleck as sf
+if TYPE_CHECKING:
+    import sunfleck as sf
 
 PASS_SPP = 256  # a square, as multijitter wants; at 256 x 256 a pass takes under 1 GB
 PASSES = {"penumbra": 128, "cornell": 48, "defocus": 128, "keyhole": 128}
@@ -122,6 +123,8 @@ def main() -> None:
     parser.add_argument("--passes", type=int, help=f"of {PASS_SPP} samples a pixel each, even (default by scene)")
     parser.add_argument("-o", "--directory", type=Path, default=Path("build/reference"))
     args = parser.parse_args()
+    import sunfleck as sf  # peers.py builds scenes where this package is not
+
     passes = args.passes or PASSES[args.name]
     if passes < 2 or passes % 2:
         parser.error(f"--passes is {passes}; it must be even, and 2 at least, so that there are two halves")
