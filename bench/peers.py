@@ -93,7 +93,11 @@ class Mitsuba:
         if mode not in self.built:
             integrator, _, sampler = mode.partition("-")
             self.built[mode] = self.reference.make_scene(
-                self.scene, SIZE, sampler=sampler or "multijitter", fastest=integrator == "direct"
+                self.scene,
+                SIZE,
+                sampler=sampler or "multijitter",
+                fastest=integrator == "direct",
+                roulette=2 if mode == "roulette" else 1000,
             )
         return self.built[mode]
 
@@ -276,9 +280,9 @@ class LuxCore:
         while not session.HasDone():
             time.sleep(1e-3)
             session.UpdateStats()
-        session.Stop()
         output = self.lux.FilmOutputType.RGB_IMAGEPIPELINE
         session.GetFilm().SaveOutput(str(path), output, self.lux.Properties())
+        session.Stop()
 
 
 RENDERERS: dict[str, type[Any]] = {"sunfleck": Sunfleck, "mitsuba": Mitsuba, "cycles": Cycles, "luxcore": LuxCore}

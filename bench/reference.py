@@ -91,12 +91,17 @@ def make_sensor(camera: sf.Camera, size: int, sampler: str) -> dict[str, Any]:
     return sensor
 
 
-def make_scene(scene: sf.Scene, size: int, sampler: str = "multijitter", fastest: bool = False) -> Any:
-    """The scene for Mitsuba; `fastest` takes its direct-light integrator where that will do."""
+def make_scene(
+    scene: sf.Scene, size: int, sampler: str = "multijitter", fastest: bool = False, roulette: int = 1000
+) -> Any:
+    """The scene for Mitsuba; `fastest` takes its direct-light integrator where that will do.
+
+    `roulette` is the path segment from which on paths may end by roulette: by default none of them.
+    """
     if any(scene.background):
         raise ValueError(f"background is {scene.background}; a reference is made before a black one only")
-    # Mitsuba counts path segments: depth 1 is emission seen directly. No roulette.
-    integrator = {"type": "path", "max_depth": scene.max_bounces + 1, "rr_depth": 1000}
+    # Mitsuba counts path segments: depth 1 is emission seen directly.
+    integrator = {"type": "path", "max_depth": scene.max_bounces + 1, "rr_depth": roulette}
     if fastest and scene.max_bounces == 1:
         integrator = {"type": "direct", "emitter_samples": 1, "bsdf_samples": 0}
     sensor = make_sensor(scene.camera, size, sampler)

@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import itertools
 import json
 import os
 import subprocess
@@ -48,14 +49,16 @@ LADDERS: dict[str, list[float]] = {
     "sunfleck roulette": SPP,
     "mitsuba direct": SQUARES,
     "mitsuba path": SQUARES,
+    "mitsuba roulette": SQUARES,
     "mitsuba direct-independent": SQUARES,
     "mitsuba path-independent": SQUARES,
     "cycles fixed": SPP,
     "cycles adaptive": [0.04 * 2**-k for k in range(8)],
     "luxcore fixed": SPP,
 }
+MODULES = {"mitsuba": "mitsuba", "cycles": "bpy", "luxcore": "pyluxcore"}
 DIRECT_ONLY = ("mitsuba direct", "mitsuba direct-independent")
-BOUNCES_ONLY = ("sunfleck roulette",)
+BOUNCES_ONLY = ("sunfleck roulette", "mitsuba roulette")
 
 
 def relative_mse(x: np.ndarray, r: np.ndarray) -> float:
@@ -188,14 +191,14 @@ def start(args: argparse.Namespace) -> None:
     for run in range(-1, args.runs):  # the first fills caches and is not kept
         for who, line in commands.items():
             started = time.perf_counter()
-            subprocess.run(
-                [*line, f"{who}.start.exr"], cwd=WORK, env=environment(who), check=True, capture_output=True
-            )
+            subprocess.run([*line, f"{who}.start.exr"], cwd=WORK, env=environment(who), check=True, capture_output=True)
             seconds = time.perf_counter() - started
             assert (WORK / f"{who}.start.exr").stat().st_size > SIZE * SIZE
             (WORK / f"{who}.start.exr").unlink()
             if run >= 0:
-                records.append({"scene": args.scene, "run": f"{stamp}.{run}", "who": f"{who} start", "seconds": seconds})
+                records.append(
+                    {"scene": args.scene, "run": f"{stamp}.{run}", "who": f"{who} start", "seconds": seconds}
+                )
         if (time.perf_counter() - begin) * (run + 3) / (run + 2) > args.limit:
             break
     add_results(records)
@@ -204,7 +207,7 @@ def start(args: argparse.Namespace) -> None:
 def time_to(target: float, records: list[dict[str, Any]]) -> float | None:
     """Interpolated on logarithms between the renders around the target, or up to a quarter beyond the last."""
     points = sorted((r["seconds"], r["relmse"]) for r in records)
-    for (t0, e0), (t1, e1) in zip(points, points[1:], strict=False):
+    for (t0, e0), (t1, e1) in itertools.pairwise(points):
         last = t1 == points[-1][0]
         if e0 >= target >= (e1 / 1.25 if last else e1) and e0 > e1:
             share = np.log(e0 / target) / np.log(e0 / e1)
@@ -248,7 +251,7 @@ def report(args: argparse.Namespace) -> None:
                 line = f"  {who:28} {state(list(runs.values()))}"
                 for ours in ("sunfleck", "sunfleck fixed", "sunfleck adaptive", "sunfleck roulette"):
                     both = [runs[run] / values[ours][run] for run in runs if run in values.get(ours, {})]
-                    if both and not who.startswith("sunfleck") or both and ours != who == "sunfleck adaptive":
+                    if both and (not who.startswith("sunfleck") or ours != who == "sunfleck adaptive"):
                         line += f"; over {ours} {state(both)}"
                 print(line)
 
@@ -257,7 +260,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("what", choices=["measure", "start", "report"])
     parser.add_argument("scene", nargs="?", choices=sorted(LEAST))
-    installed = [who for who in ("mitsuba", "cycles", "luxcore") if Path(command(who, WORK)[0]).exists()]
+    installed = [who for who, module in MODULES.items() if [*ROOT.glob(f"build/{who}/lib/*/site-packages/{module}")]]
     parser.add_argument("--peers", nargs="+", default=["sunfleck", *installed], help="default: all that are installed")
     parser.add_argument("--who", action="append", help='a configuration, as "sunfleck fixed"; may be repeated')
     parser.add_argument("--runs", type=int, default=7, help="at the most (default 7)")
