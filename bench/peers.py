@@ -16,6 +16,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import os
 import sys
 import time
 from pathlib import Path
@@ -282,7 +283,7 @@ class LuxCore:
             session.UpdateStats()
         output = self.lux.FilmOutputType.RGB_IMAGEPIPELINE
         session.GetFilm().SaveOutput(str(path), output, self.lux.Properties())
-        session.Stop()
+        os._exit(0)  # the file is there; its threads may crash the interpreter's own end
 
 
 RENDERERS: dict[str, type[Any]] = {"sunfleck": Sunfleck, "mitsuba": Mitsuba, "cycles": Cycles, "luxcore": LuxCore}
