@@ -15,9 +15,10 @@ venv = .venv/bin/python
 
 # Mitsuba, for bench, in an environment of its own that sees this package, with an LLVM it accepts.
 MITSUBA_PYTHON = build/mitsuba/bin/python
-with_mitsuba = DRJIT_LIBLLVM_PATH=$$(ls /usr/lib/*/libLLVM.so.19* 2>/dev/null | head -n 1) PYTHONPATH=$$($(venv) -c 'import sysconfig; print(sysconfig.get_path("platlib"))') $(MITSUBA_PYTHON)
+with_llvm = DRJIT_LIBLLVM_PATH=$$(ls /usr/lib/*/libLLVM.so.19* 2>/dev/null | head -n 1)
+with_mitsuba = $(with_llvm) PYTHONPATH=$$($(venv) -c 'import sysconfig; print(sysconfig.get_path("platlib"))') $(MITSUBA_PYTHON)
 
-.PHONY: help demo test sanitize lint docs bench battery gallery clean packages-demo packages-test packages-bench build-c
+.PHONY: help demo test sanitize lint docs bench bench-peers battery gallery clean packages-demo packages-test packages-bench build-c
 .DELETE_ON_ERROR:
 .NOTPARALLEL: # packages come first; CMake and pip use all processors themselves
 
@@ -28,6 +29,7 @@ help:
 	@echo "make lint      ruff, mypy --strict, warnings as errors, clang-format"
 	@echo "make docs      builds the site into build/site/, which needs no network to be read"
 	@echo "make bench     measures speed and accuracy; figures go to standard output"
+	@echo "make bench-peers  measures seconds to a stated error beside Mitsuba, Cycles and LuxCore"
 	@echo "make battery   runs dieharder over every generator; writes the table of docs/generators.md"
 	@echo "make gallery   writes docs/gallery.md and its pictures anew"
 	@echo "make clean     removes build/, out/, dist/ and .venv/"
@@ -68,6 +70,17 @@ bench: packages-bench .venv/.test build/reference/penumbra_256.npy build/referen
 	$(venv) bench/generators.py
 	$(venv) bench/quality.py
 	$(venv) bench/which_pattern.py
+
+# Some ten minutes; results add up in build/peers/results.json, and `render_peers.py report` shows them.
+peers = build/reference/penumbra_256.npy build/reference/defocus_256.npy build/reference/cornell_256.npy
+bench-peers: packages-bench .venv/.test $(MITSUBA_PYTHON) build/cycles/bin/python build/luxcore/bin/python $(peers)
+	for scene in penumbra defocus cornell; do \
+	    $(with_llvm) $(venv) bench/render_peers.py measure $$scene && \
+	    $(with_llvm) $(venv) bench/render_peers.py start $$scene || exit 1; \
+	done
+	$(venv) bench/render_peers.py report
+	$(venv) bench/scaling.py threads
+	$(venv) bench/scaling.py memory
 
 # Some 15 minutes of two processors; build/battery/ keeps what was run.
 battery: packages-demo .venv/.demo
@@ -124,6 +137,15 @@ build/wheel/.built: $(sources) | .venv/.created
 $(MITSUBA_PYTHON):
 	$(PYTHON) -m venv build/mitsuba
 	$(MITSUBA_PYTHON) -m pip install -q mitsuba
+
+# Cycles (Blender as a module) and LuxCore, for bench-peers; each where pip finds a wheel for this Python.
+build/cycles/bin/python:
+	$(PYTHON) -m venv build/cycles
+	build/cycles/bin/python -m pip install -q bpy || echo "note: bpy does not install here; Cycles is left out" >&2
+
+build/luxcore/bin/python:
+	$(PYTHON) -m venv build/luxcore
+	build/luxcore/bin/python -m pip install -q pyluxcore numpy || echo "note: pyluxcore does not install here; LuxCore is left out" >&2
 
 build/reference/%_256.npy: | packages-bench .venv/.demo $(MITSUBA_PYTHON)
 	$(with_mitsuba) bench/reference.py $*

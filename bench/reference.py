@@ -22,12 +22,13 @@ from __future__ import annotations
 import argparse
 import time
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import mitsuba as mi
 import numpy as np
 
-import sunfleck as sf
+if TYPE_CHECKING:
+    import sunfleck as sf
 
 PASS_SPP = 256  # a square, as multijitter wants; at 256 x 256 a pass takes under 1 GB
 PASSES = {"penumbra": 128, "cornell": 48, "defocus": 128, "keyhole": 128}
@@ -90,12 +91,17 @@ def make_sensor(camera: sf.Camera, size: int, sampler: str) -> dict[str, Any]:
     return sensor
 
 
-def make_scene(scene: sf.Scene, size: int, sampler: str = "multijitter", fastest: bool = False) -> Any:
-    """The scene for Mitsuba; `fastest` takes its direct-light integrator where that will do."""
+def make_scene(
+    scene: sf.Scene, size: int, sampler: str = "multijitter", fastest: bool = False, roulette: int = 1000
+) -> Any:
+    """The scene for Mitsuba; `fastest` takes its direct-light integrator where that will do.
+
+    `roulette` is the path segment from which on paths may end by roulette: by default none of them.
+    """
     if any(scene.background):
         raise ValueError(f"background is {scene.background}; a reference is made before a black one only")
-    # Mitsuba counts path segments: depth 1 is emission seen directly. No roulette.
-    integrator = {"type": "path", "max_depth": scene.max_bounces + 1, "rr_depth": 1000}
+    # Mitsuba counts path segments: depth 1 is emission seen directly.
+    integrator = {"type": "path", "max_depth": scene.max_bounces + 1, "rr_depth": roulette}
     if fastest and scene.max_bounces == 1:
         integrator = {"type": "direct", "emitter_samples": 1, "bsdf_samples": 0}
     sensor = make_sensor(scene.camera, size, sampler)
@@ -122,6 +128,8 @@ def main() -> None:
     parser.add_argument("--passes", type=int, help=f"of {PASS_SPP} samples a pixel each, even (default by scene)")
     parser.add_argument("-o", "--directory", type=Path, default=Path("build/reference"))
     args = parser.parse_args()
+    import sunfleck as sf  # peers.py builds scenes where this package is not
+
     passes = args.passes or PASSES[args.name]
     if passes < 2 or passes % 2:
         parser.error(f"--passes is {passes}; it must be even, and 2 at least, so that there are two halves")
