@@ -10,7 +10,9 @@ import math
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -332,7 +334,7 @@ def run(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False, cwd=cwd)
 
 
-def test_the_command_writes_figure_numbers_and_page(tmp_path: Path) -> None:
+def test_the_command_writes_figure_numbers_and_page(tmp_path: Path, open_page: Callable[[Path], Any]) -> None:
     options = ["--quick", "--pattern", "random,sobol", "--integrand", "product,pole", "--seeds", "4"]
     result = run(*options, "--max-samples", "1024", "-o", "c.png", "-o", "d.svg", "--html", "c.html", cwd=tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
@@ -348,6 +350,11 @@ def test_the_command_writes_figure_numbers_and_page(tmp_path: Path) -> None:
     page = (tmp_path / "c.html").read_text()
     assert page.count('class="chart"') == 6
     assert not re.findall(r'<(?:script|link|img)\b[^>]*(?:src|href)="https?:', page)
+    browser = open_page(tmp_path / "c.html")
+    assert len(browser.find_elements("css selector", ".chart .scatterlayer .trace")) >= 12  # six charts, two patterns
+    browser.find_elements("css selector", ".chart .legendtoggle")[0].click()
+    browser.execute_async_script("setTimeout(arguments[0], 600);")  # plotly waits for a second click
+    assert browser.execute_script("return document.querySelector('.chart').data[0].visible;") == "legendonly"
     again = run(*options, "--max-samples", "1024", "-o", "c.png", cwd=tmp_path)
     assert again.stdout == result.stdout  # nothing was measured anew
 
