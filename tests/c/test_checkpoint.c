@@ -201,7 +201,7 @@ static void test_a_long_round_is_written_down_while_it_runs(void **state) {
     uint32_t seen = 0;
     sf_render_options options = options_for(64, 0);
     options.absolute_tolerance = 1e-6;
-    options.min_spp = options.max_spp = 1500 / TEST_STRIDE; /* one round of some 6 million paths */
+    options.min_spp = options.max_spp = 1500 / (1 + TEST_STRIDE / 6); /* one round of some 6 million paths */
     options.seed = 5;
     sf_film *whole = render(scene, &options);
     options.checkpoint_path = FILE_NAME;
