@@ -124,8 +124,10 @@ void sf_aov_add(sf_aov_film *aovs, const sf_batch *batch) {
 /* ---- values ---- */
 
 /* Of the mean of (R+G+B)/3: what the half-width is made of. */
-static float variance_of_mean(const sf_film *film, size_t i) {
-    double error = (double)film->half_width[i] / film->factor;
+static float variance_of_mean(const sf_film *film, const sf_film_pixel *pixel, size_t i) {
+    bool looked = film->options.stop == SF_STOP_DYADIC && pixel->look;
+    unsigned levels = !looked ? 0 : pixel->look < SF_DYADIC_LEVELS ? pixel->look : SF_DYADIC_LEVELS;
+    double error = (double)film->half_width[i] / film->factors[levels];
     return (float)(error * error);
 }
 
@@ -142,7 +144,7 @@ static void resolve_pixel(const sf_film *film, const sf_film_pixel *pixel, size_
         if (!wants(aovs, k)) continue;
         float *value = aovs->values[k] + i * forms[k].components;
         if (!forms[k].summed) {
-            *value = variance_of_mean(film, i);
+            *value = variance_of_mean(film, pixel, i);
             continue;
         }
         const double *sum = sums + aovs->first_sum[k];

@@ -154,7 +154,7 @@ static uint32_t trace_surface(run *r, uint32_t bounce, uint32_t count) {
 }
 
 static void play_roulette(run *r, uint32_t bounce, uint32_t count) {
-    sf_coordinate_source source = sf_roulette_source(&r->context->scene->plan, bounce);
+    sf_coordinate_source source = sf_roulette_source(&r->context->coordinates, &r->context->scene->plan, bounce);
     sf_batch *b = r->batch;
     r->coordinates->fill(&r->context->coordinates, &source, b->blocks, b->block_count, b->coordinate);
     r->shade->roulette(b, count);

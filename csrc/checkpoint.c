@@ -257,6 +257,20 @@ static sf_status take_u32(const sf_container *file, const char *name, uint32_t *
     return sf_container_take(file, &array, error);
 }
 
+/* Whether every open pixel of a second set is to have a count that there can be. */
+static bool is_planned(const sf_checkpoint *c) {
+    const sf_film *film = c->film;
+    uint32_t columns = (film->width + SF_CELL_SIZE - 1) / SF_CELL_SIZE;
+    for (uint32_t y = 0; y < film->height; ++y)
+        for (uint32_t x = 0; x < film->width; ++x) {
+            uint32_t bit = sf_cell_number(x % SF_CELL_SIZE, y % SF_CELL_SIZE);
+            if (!(c->open[y / SF_CELL_SIZE * (size_t)columns + x / SF_CELL_SIZE] >> bit & 1u)) continue;
+            double planned = film->pixels[(size_t)y * film->width + x].evidence.planned;
+            if (!(planned >= 1 && planned <= SF_MAX_SPP)) return false;
+        }
+    return true;
+}
+
 /* Fills the accumulators and the state. Values that would lead outside an array are refused:
  * whoever wrote the file may have meant ill. */
 static sf_status take_progress(const sf_container *file, sf_checkpoint *c, sf_error *error) {
@@ -272,7 +286,8 @@ static sf_status take_progress(const sf_container *file, sf_checkpoint *c, sf_er
     for (size_t i = 0; i < c->cells; ++i) sound = sound && !(c->open[i] & ~layout[i]) && !(c->active[i] & ~layout[i]);
     for (size_t i = 0; i < (size_t)c->film->width * c->film->height; ++i)
         sound = sound && c->film->pixels[i].reason < SF_STOP_REASON_COUNT;
-    sound = sound && c->film->counted > 0 && c->state.second <= 1;
+    sound = sound && c->film->counted > 0 && c->state.second <= (uint32_t)(c->film->options.unbiased != 0);
+    sound = sound && (!c->state.second || is_planned(c));
     free(layout);
     if (status || sound) return status;
     return sf_fail(error, SF_STATUS_IO, "checkpoint '%s' holds values that no render writes", file->path);
@@ -404,9 +419,9 @@ static sf_status match(const sf_container *file, const sf_film *film, const sf_r
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "checkpoint '%.100s' was made with %s; this render has %s%s",
                        file->path, d.theirs, d.ours,
                        d.limits ? " (counts may only grow, the tolerance only shrink)" : "");
-    if (*more && film->options.unbiased)
+    if (film->options.unbiased && (*more || theirs.samples != film->options.samples))
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
-                       "checkpoint '%s' has unbiased set, and its second set does not grow: spp, max_spp and the "
+                       "checkpoint '%s' has unbiased set, and its second set does not grow: samples, max_spp and the "
                        "tolerance must be the file's",
                        file->path);
     if (theirs.spp != film->options.spp && is_closed(theirs.pattern))

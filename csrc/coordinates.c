@@ -55,15 +55,18 @@ static void assign_sources(sf_coordinates *coordinates, const sf_plan *plan) {
     }
 }
 
-/* The path's dimensions are those of the groups, one after another. */
-static void assign_primes(sf_coordinates *coordinates, uint32_t groups) {
+/* The path's dimensions are those of the groups, one after another, and then roulette's. */
+static void assign_primes(sf_coordinates *coordinates, const sf_plan *plan) {
     uint32_t dimension = 0, prime = sf_next_prime(0);
-    for (uint32_t g = 0; g < groups; ++g) {
+    for (uint32_t g = 0; g < plan->dimension_group_count; ++g) {
         sf_coordinate_source *source = coordinates->sources + g;
         assert(source->first == dimension);
         for (uint32_t d = 0; d < source->count; ++d, ++dimension, prime = sf_next_prime(prime))
             source->primes[d] = prime;
     }
+    assert(dimension == plan->dimensions_per_path);
+    for (uint32_t bounce = 0; bounce <= plan->max_bounces; ++bounce, prime = sf_next_prime(prime))
+        coordinates->roulette_primes[bounce] = prime;
 }
 
 static sf_status choose_cells(sf_coordinates *coordinates, uint32_t spp, sf_error *error) {
@@ -100,7 +103,7 @@ sf_status sf_coordinates_init(sf_coordinates *coordinates, sf_pattern pattern, c
     coordinates->pattern = pattern;
     coordinates->seed = seed;
     assign_sources(coordinates, plan);
-    if (pattern == SF_PATTERN_HALTON) assign_primes(coordinates, plan->dimension_group_count);
+    if (pattern == SF_PATTERN_HALTON) assign_primes(coordinates, plan);
     if (pattern == SF_PATTERN_SOBOL)
         for (uint32_t d = 0; d < SF_SET_DIMENSIONS; ++d) tabulate_sobol(d, coordinates->sobol[d]);
     return choose_cells(coordinates, spp, error);

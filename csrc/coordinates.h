@@ -49,6 +49,7 @@ typedef struct sf_coordinates {
     uint32_t cells;
     uint64_t seed;
     sf_coordinate_source sources[SF_PLAN_MAX_GROUPS]; /* by the plan's group */
+    uint32_t roulette_primes[SF_MAX_BOUNCES + 1];     /* halton: by bounce */
     /* Sobol's direction numbers, bits reversed, summed over each byte of the index. */
     uint32_t sobol[SF_SET_DIMENSIONS][4][256];
 } sf_coordinates;
@@ -59,9 +60,13 @@ sf_status sf_coordinates_init(sf_coordinates *coordinates, sf_pattern pattern, c
                               uint64_t seed, sf_error *error);
 
 /* The coordinate of Russian roulette at the vertex `bounce`, which comes after the plan's own. */
-static inline sf_coordinate_source sf_roulette_source(const sf_plan *plan, uint32_t bounce) {
-    return (sf_coordinate_source){
-        .set = bounce - 1, .dimension = 6, .first = plan->dimensions_per_path + bounce, .count = 1};
+static inline sf_coordinate_source sf_roulette_source(const sf_coordinates *coordinates, const sf_plan *plan,
+                                                      uint32_t bounce) {
+    return (sf_coordinate_source){.set = bounce - 1,
+                                  .dimension = 6,
+                                  .first = plan->dimensions_per_path + bounce,
+                                  .count = 1,
+                                  .primes = {coordinates->roulette_primes[bounce]}};
 }
 
 #endif

@@ -99,7 +99,8 @@ struct sf_film {
     uint64_t counted;                      /* pixels of the crop that do */
     uint64_t mask_hash;
     uint8_t untouched; /* the sf_stop_reason of pixels without a sample */
-    double factor;     /* standard errors in a half-width */
+    double
+        factors[SF_DYADIC_LEVELS + 1]; /* standard errors in a half-width: the rule's, then by levels of differences */
     sf_attribute *attributes;
     size_t attribute_count;
     sf_film_summary summary;

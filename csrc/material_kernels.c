@@ -24,6 +24,7 @@ static void keep(sf_batch *b, const sf_scene *scene, uint32_t count) {
         float lift = sf_lift(b->origin[0][i], b->origin[1][i], b->origin[2][i], b->distance[i]);
         float least = scene->mesh_table.columns[SF_MESH_LIFT][b->mesh[i]];
         b->lift[k] = (lift > least ? lift : least) * (1 + scene->back);
+        if (b->mesh[i] == scene->mesh_table.miss + 1) b->lift[k] = 0; /* the fog has no surface to leave */
     }
     if (!scene->rounds) return;
     for (uint32_t k = 0; k < count; ++k) {

@@ -114,6 +114,7 @@ static bool decide_second(const sf_rounds *r, sf_film_pixel *pixel, size_t state
     if (sf_film_taken(pixel) == 0) pixel->reason = 0; /* to be told as untouched */
     if (!full && sf_film_taken(pixel)) {
         pixel->half_width = sf_film_half_width(pixel, sf_normal_factor(r->options.confidence));
+        pixel->look = 0; /* it is no look's */
         pixel->reason = (uint8_t)unmet_reason(r, false, state);
     }
     if (pixel->moments.nonfinite) pixel->reason = SF_STOP_SUSPICIOUS;
@@ -215,7 +216,8 @@ static uint32_t round_end(const sf_rounds *r) {
 static void close_all(sf_rounds *r) {
     if (sf_atomic_load(&r->state) == SF_RUNNING) sf_atomic_store(&r->state, SF_SPENT);
     r->sampled = sf_atomic_load(&r->state);
-    r->film->untouched = (uint8_t)unmet_reason(r, false, r->sampled);
+    bool spent = r->second && r->sampled == SF_SPENT; /* what the pilot left out keeps its reason */
+    if (!spent) r->film->untouched = (uint8_t)unmet_reason(r, false, r->sampled);
     memcpy(r->active, r->open, sf_rounds_cell_count(r) * sizeof *r->active);
     sf_rounds_list_tiles(r);
     sf_pool_run(r->pool, r->tile_count, decide_tile, sf_rounds_wake, r);
@@ -276,7 +278,7 @@ static void begin_second(sf_rounds *r) {
 void sf_rounds_run(sf_rounds *r) {
     bool pilot = r->options.unbiased && !r->second;
     run_stage(r);
-    if (pilot && r->sampled == SF_INTERRUPTED) {
+    if (pilot && (r->sampled == SF_INTERRUPTED || sf_atomic_load(&r->state) == SF_INTERRUPTED)) {
         sf_film_mark_pilot(r->film);
     } else if (pilot) {
         begin_second(r);

@@ -41,7 +41,8 @@ static void flush_batch(sf_rounds *r, sf_rounds_worker *worker) {
     if (r->film->aovs) sf_aov_add(r->film->aovs, batch);
     batch->block_count = 0;
     sf_atomic_fetch_add(&worker->samples, samples);
-    if (r->deadline > 0 && sf_seconds_now() >= r->deadline) sf_atomic_store(&r->state, SF_OUT_OF_TIME);
+    if (r->deadline > 0 && sf_seconds_now() >= r->deadline)
+        (void)sf_atomic_replace(&r->state, SF_RUNNING, SF_OUT_OF_TIME); /* an interruption stays */
 }
 
 /* The block of pixel m that starts at sample `n`. */

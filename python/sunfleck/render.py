@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sunfleck import _core
-from sunfleck._arguments import integer, number, text
+from sunfleck._arguments import flag, integer, number, text
 from sunfleck._core import Progress
 from sunfleck._files import FilePath, given_path
 from sunfleck.error import CheckpointError
@@ -542,7 +542,7 @@ def render(
         "pattern": text("pattern", pattern),
         "pixel_filter": text("pixel_filter", pixel_filter),
         "stop": text("stop", stop),
-        "unbiased": bool(unbiased),
+        "unbiased": flag("unbiased", unbiased),
         "seeds": text("seeds", seeds),
         "seed": integer("seed", seed),
         "threads": _count("threads", threads),

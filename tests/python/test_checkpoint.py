@@ -115,13 +115,14 @@ def test_what_does_not_match_is_named(penumbra: sf.Scene, tmp_path: Path, option
 
 def test_another_mask_is_refused(penumbra: sf.Scene, tmp_path: Path) -> None:
     path = tmp_path / "mask.ckpt"
-    whole = sf.render(penumbra, 50, 40, spp=32, mask=DISK, aovs="albedo", checkpoint=path)
+    whole = sf.render(penumbra, 50, 40, spp=32, mask=DISK, aovs="albedo,variance", checkpoint=path)
     kept = sf.merge([path])
     assert_same_film(whole, kept)
-    assert np.array_equal(whole.aovs["albedo"], kept.aovs["albedo"])
+    for name in ("albedo", "variance"):
+        assert np.array_equal(whole.aovs[name], kept.aovs[name])
     for mask in (None, ~DISK):
         with pytest.raises(ValueError, match="was made with mask"):
-            sf.render(penumbra, 50, 40, spp=32, mask=mask, aovs="albedo", checkpoint=path)
+            sf.render(penumbra, 50, 40, spp=32, mask=mask, aovs="albedo,variance", checkpoint=path)
     with pytest.raises(ValueError, match="aov"):
         sf.render(penumbra, 50, 40, spp=32, mask=DISK, aovs="depth", checkpoint=path)
 
@@ -134,6 +135,10 @@ def test_a_second_set_does_not_grow(penumbra: sf.Scene, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="unbiased"):
         sf.render(penumbra, 24, 24, tolerance=0.1, checkpoint=path)
     assert_same_film(made, sf.render(penumbra, 24, 24, tolerance=0.1, unbiased=True, checkpoint=path))
+    budget = tmp_path / "budget.ckpt"
+    sf.render(penumbra, 24, 24, samples=24 * 24 * 64, unbiased=True, checkpoint=budget)
+    with pytest.raises(ValueError, match="does not grow"):
+        sf.render(penumbra, 24, 24, samples=24 * 24 * 128, unbiased=True, checkpoint=budget)
 
 
 def test_another_scene_is_refused(penumbra: sf.Scene, cornell: sf.Scene, tmp_path: Path) -> None:

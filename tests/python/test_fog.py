@@ -165,3 +165,20 @@ def test_plans_show_fog_where_there_is_some() -> None:
 def test_bad_values_are_refused(make: Callable[[], object], error: type[Exception], part: str) -> None:
     with pytest.raises(error, match=part):
         make()
+
+
+def test_diffuse_walls_under_a_square_light_agree_in_fog() -> None:
+    """Nothing here but the fog needs the lights' densities by solid angle."""
+    quad = [[0, 1, 2], [0, 2, 3]]
+    floor = sf.Mesh([[-4, -4, -3], [4, -4, -3], [4, 4, -3], [-4, 4, -3]], quad, (0.5, 0.5, 0.5))
+    light = sf.Mesh([[-1, -1, 3], [-1, 1, 3], [1, 1, 3], [1, -1, 3]], quad, (0, 0, 0), (10, 10, 10))
+    camera = sf.Camera((0, -5, 2.6), (0, 0, 2.6), up=(0, 0, 1), vertical_fov=40)
+    means = {}
+    for way in ("both", "light", "surface"):
+        scene = sf.Scene([floor, light], camera, max_bounces=2, fog=sf.Fog(0.3, 0.05, 0.2), light_sampling=way)
+        image = sf.render(scene, 24, 24, spp=1024, pattern="random", seed=4)
+        error = float(np.sqrt(np.mean(image.half_width.astype(float) ** 2) / 24**2) / 1.96)
+        means[way] = (float(image.color.mean(dtype=float)), error)
+    for way in ("light", "surface"):
+        (a, e), (b, f) = means["both"], means[way]
+        assert abs(a - b) < 5 * np.hypot(e, f), means

@@ -70,6 +70,8 @@ def test_threads_and_tiles_change_no_bit_of_two_stages(cornell: sf.Scene) -> Non
 def test_a_fixed_count_has_no_second_set(penumbra: sf.Scene) -> None:
     with pytest.raises(ValueError, match="spp is 16 and unbiased is set too"):
         sf.render(penumbra, 8, 8, spp=16, unbiased=True)
+    with pytest.raises(TypeError, match="unbiased is 'no'; give True or False"):
+        sf.render(penumbra, 8, 8, unbiased="no")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="samples is 100; at least two, with unbiased, for each of 64 pixels"):
         sf.render(penumbra, 8, 8, samples=100, unbiased=True)
 

@@ -71,7 +71,8 @@ typedef enum sf_stop_reason {
     SF_STOP_OUT_OF_TIME, /* the time limit came first */
     SF_STOP_SUSPICIOUS,  /* samples that were not finite were dropped; or, by the rule dyadic, a heavy
                             tail was seen: light is rare around the pixel, which has seen less of it
-                            than its neighbours, and would have met the tolerance by that alone */
+                            than its neighbours, and was taken to be less certain than it looked; it
+                            ended by max_spp, time or budget */
     SF_STOP_INTERRUPTED, /* the caller asked to stop */
     SF_STOP_MASKED,      /* the mask leaves the pixel out */
     SF_STOP_REASON_COUNT

@@ -206,7 +206,8 @@ def scenes(
     >>> [panel.title for panel in made.panels]
     ['penumbra, 64 x 64 pixels', 'calibration', 'coverage', 'coverage, hard pixels']
     """
-    named = _names("patterns", patterns, ("sobol",) if quick else ("sobol", "random"), RENDER_PATTERNS)
+    open_ended = [name for name in RENDER_PATTERNS if name != "uniform"]  # that one needs its count ahead
+    named = _names("patterns", patterns, ("sobol",) if quick else ("sobol", "random"), open_ended)
     rules = _names("stops", stops, RULES[:2] if quick else RULES, RULES)
     filters = _names(
         "pixel_filters", pixel_filters, ("box",) if quick else ("box", "gaussian_truncated"), PIXEL_FILTERS

@@ -62,7 +62,7 @@ class Pixels:
     def __init__(self, scene: str | Scene, size: int, reference_spp: int, pixel_filter: str = "box") -> None:
         self.scene = scene if isinstance(scene, Scene) else scene_by_name(scene)
         self.size, self._spp, self._filter = size, reference_spp, pixel_filter
-        name = "the scene given" if isinstance(scene, Scene) else scene
+        name = f"the scene given {scene.info.hash:08x}"[:24] if isinstance(scene, Scene) else scene
         if isinstance(scene, str) and scene not in SCENES:  # a file that has changed is another scene
             name = f"{Path(scene).name} {hashlib.sha256(Path(scene).read_bytes()).hexdigest()[:8]}"
         self.title = f"{name}, {size} x {size} pixels" + (f", {pixel_filter}" if pixel_filter != "box" else "")
