@@ -10,6 +10,7 @@
 #include "aov_kernels.h"
 #include "error.h"
 #include "platform.h"
+#include "stopping.h"
 
 /* An AOV's components; those without sums of their own are told from the film's statistics. */
 static const struct {
@@ -125,9 +126,7 @@ void sf_aov_add(sf_aov_film *aovs, const sf_batch *batch) {
 
 /* Of the mean of (R+G+B)/3: what the half-width is made of. */
 static float variance_of_mean(const sf_film *film, const sf_film_pixel *pixel, size_t i) {
-    bool looked = film->options.stop == SF_STOP_DYADIC && pixel->look;
-    unsigned levels = !looked ? 0 : pixel->look < SF_DYADIC_LEVELS ? pixel->look : SF_DYADIC_LEVELS;
-    double error = (double)film->half_width[i] / film->factors[levels];
+    double error = (double)film->half_width[i] / sf_stop_factor(film, &film->options, pixel);
     return (float)(error * error);
 }
 

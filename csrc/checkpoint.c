@@ -257,14 +257,18 @@ static sf_status take_u32(const sf_container *file, const char *name, uint32_t *
     return sf_container_take(file, &array, error);
 }
 
+static bool is_open(const sf_film *film, const uint64_t *open, uint32_t x, uint32_t y) {
+    size_t columns = (film->width + SF_CELL_SIZE - 1) / SF_CELL_SIZE;
+    uint32_t bit = sf_cell_number(x % SF_CELL_SIZE, y % SF_CELL_SIZE);
+    return open[y / SF_CELL_SIZE * columns + x / SF_CELL_SIZE] >> bit & 1u;
+}
+
 /* Whether every open pixel of a second set is to have a count that there can be. */
 static bool is_planned(const sf_checkpoint *c) {
     const sf_film *film = c->film;
-    uint32_t columns = (film->width + SF_CELL_SIZE - 1) / SF_CELL_SIZE;
     for (uint32_t y = 0; y < film->height; ++y)
         for (uint32_t x = 0; x < film->width; ++x) {
-            uint32_t bit = sf_cell_number(x % SF_CELL_SIZE, y % SF_CELL_SIZE);
-            if (!(c->open[y / SF_CELL_SIZE * (size_t)columns + x / SF_CELL_SIZE] >> bit & 1u)) continue;
+            if (!is_open(film, c->open, x, y)) continue;
             double planned = film->pixels[(size_t)y * film->width + x].evidence.planned;
             if (!(planned >= 1 && planned <= SF_MAX_SPP)) return false;
         }
@@ -464,15 +468,12 @@ sf_status sf_checkpoint_restore(sf_checkpoint *c, const char *path, sf_resume *r
 
 /* The pixels of a cell that were still on their way have no decision of their own yet. */
 static void mark_unfinished(sf_film *film, const uint64_t *open, bool second) {
-    uint32_t columns = (film->width + SF_CELL_SIZE - 1) / SF_CELL_SIZE;
-    sf_stop_factors factors = sf_stop_factors_of(&film->options);
     for (uint32_t y = 0; y < film->height; ++y)
         for (uint32_t x = 0; x < film->width; ++x) {
-            uint32_t bit = sf_cell_number(x % SF_CELL_SIZE, y % SF_CELL_SIZE);
-            if (!(open[y / SF_CELL_SIZE * (size_t)columns + x / SF_CELL_SIZE] >> bit & 1u)) continue;
+            if (!is_open(film, open, x, y)) continue;
             sf_film_pixel *pixel = film->pixels + (size_t)y * film->width + x;
             pixel->half_width = second ? sf_film_half_width(pixel, sf_normal_factor(film->options.confidence))
-                                       : sf_stop_half_width(film, &film->options, x, y, &factors);
+                                       : sf_stop_half_width(film, &film->options, x, y);
             pixel->reason = pixel->moments.nonfinite ? SF_STOP_SUSPICIOUS : SF_STOP_INTERRUPTED;
         }
 }

@@ -97,9 +97,7 @@ sf_status sf_film_create(const sf_render_options *options, bool masked, sf_film 
     film->options.checkpoint_path = NULL;
     film->options.mask = NULL;
     film->negative_part = sf_filter_negative_part(options->pixel_filter);
-    sf_stop_factors factors = sf_stop_factors_of(options);
-    memcpy(film->factors, factors.by_levels, sizeof film->factors);
-    film->factors[0] = factors.rule;
+    sf_stop_set_factors(film, options);
     film->parts = malloc(sizeof *film->parts);
     film->part_count = 1;
     sf_status status =

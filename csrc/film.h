@@ -98,9 +98,8 @@ struct sf_film {
     uint8_t *mask;                         /* of the crop: 1 where the pixel counts; NULL: all do */
     uint64_t counted;                      /* pixels of the crop that do */
     uint64_t mask_hash;
-    uint8_t untouched; /* the sf_stop_reason of pixels without a sample */
-    double
-        factors[SF_DYADIC_LEVELS + 1]; /* standard errors in a half-width: the rule's, then by levels of differences */
+    uint8_t untouched;                    /* the sf_stop_reason of pixels without a sample */
+    double factors[SF_DYADIC_LEVELS + 1]; /* standard errors in a half-width, see sf_stop_factor */
     sf_attribute *attributes;
     size_t attribute_count;
     sf_film_summary summary;

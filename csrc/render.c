@@ -96,7 +96,6 @@ static sf_status prepare(sf_rounds *r, sf_error *error) {
     r->context.seeds = o->seeds;
     r->context.roulette = o->roulette;
     r->context.isa = sf_isa_active();
-    r->factors = sf_stop_factors_of(o);
     sf_rounds_set_deadline(r);
     r->progress.pixels = r->film->counted;
     r->progress.expected_samples = o->spp * r->region;

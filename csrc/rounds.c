@@ -132,7 +132,7 @@ static bool decide_pixel(const sf_rounds *r, uint32_t x, uint32_t y, size_t stat
         return false;                                                  /* decided here before, by an easier tolerance */
     if (o->spp && !full && state == SF_RUNNING) return false;          /* nothing to tell before the end */
     if (sf_film_taken(pixel) == 0 && state != SF_RUNNING) return true; /* not a page of it is touched; see close_all */
-    pixel->half_width = sf_stop_half_width(r->film, o, x, y, &r->factors);
+    pixel->half_width = sf_stop_half_width(r->film, o, x, y);
     bool met = !o->spp && summary->tolerance >= 0 && sf_film_taken(pixel) >= o->min_spp &&
                (double)pixel->half_width <= summary->tolerance;
     if (!met && !full && state == SF_RUNNING) return false;

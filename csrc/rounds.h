@@ -59,8 +59,7 @@ typedef struct sf_rounds {
     sf_lap lap;
     double target; /* of a budget: half-widths beyond it are to be lowered */
     bool level_fixed;
-    sf_stop_factors factors; /* standard errors in a half-width */
-    bool second;             /* the pilot is over: the set that the picture shows is taken */
+    bool second; /* the pilot is over: the set that the picture shows is taken */
     double start, deadline;
     sf_progress progress;
     sf_atomic_size state;

@@ -249,22 +249,25 @@ static float replicates_half_width(const sf_film *film, const sf_film_pixel *pix
 
 /* The variance of a pixel is told from the differences of nine: nine for each pair. Student's t of as
  * many degrees of freedom stands for what is not known of it. */
-sf_stop_factors sf_stop_factors_of(const sf_render_options *o) {
-    sf_stop_factors factors = {.rule = sf_normal_factor(o->confidence)};
-    if (o->stop == SF_STOP_REPLICATES) factors.rule = sf_student_t_factor(o->confidence, SF_REPLICATES - 1);
+void sf_stop_set_factors(sf_film *film, const sf_render_options *o) {
+    film->factors[0] = sf_normal_factor(o->confidence);
+    if (o->stop == SF_STOP_REPLICATES) film->factors[0] = sf_student_t_factor(o->confidence, SF_REPLICATES - 1);
     for (unsigned levels = 1; levels <= LEVELS; ++levels)
-        factors.by_levels[levels] = sf_student_t_factor(o->confidence, 9.0 * ((1u << levels) - 1)) * sqrt(SAFETY);
-    return factors;
+        film->factors[levels] = sf_student_t_factor(o->confidence, 9.0 * ((1u << levels) - 1)) * sqrt(SAFETY);
 }
 
-float sf_stop_half_width(const sf_film *film, const sf_render_options *o, uint32_t x, uint32_t y,
-                         const sf_stop_factors *factors) {
+double sf_stop_factor(const sf_film *film, const sf_render_options *o, const sf_film_pixel *pixel) {
+    unsigned levels = o->stop == SF_STOP_DYADIC ? pixel->look : 0;
+    return film->factors[levels < LEVELS ? levels : LEVELS];
+}
+
+float sf_stop_half_width(const sf_film *film, const sf_render_options *o, uint32_t x, uint32_t y) {
     const sf_film_pixel *pixel = film->pixels + (size_t)y * film->width + x;
+    double factor = sf_stop_factor(film, o, pixel);
     if (o->stop == SF_STOP_REPLICATES && sf_stop_is_look(o, (uint32_t)sf_film_taken(pixel)))
-        return replicates_half_width(film, pixel, factors->rule);
-    if (o->stop != SF_STOP_DYADIC || !pixel->look) return sf_film_half_width(pixel, factors->rule);
-    unsigned levels = pixel->look < LEVELS ? pixel->look : LEVELS;
-    double half_width = factors->by_levels[levels] * sqrt((double)pooled_variance(film, x, y));
+        return replicates_half_width(film, pixel, factor);
+    if (o->stop != SF_STOP_DYADIC || !pixel->look) return sf_film_half_width(pixel, factor);
+    double half_width = factor * sqrt((double)pooled_variance(film, x, y));
     double least = unseen(film, o, (double)(SF_LANES << pixel->look));
     return (float)(half_width > least ? half_width : least);
 }

@@ -75,17 +75,15 @@ uint32_t sf_stop_pool_count(const sf_film *film);
  * `look`. */
 void sf_stop_look_at_pool(sf_film *film, uint32_t pool, uint32_t look, sf_lap lap);
 
-/* How many standard errors make the rule's half-width: `rule` where nothing tells how well the
- * variance is known; under dyadic, `by_levels` by the levels of differences at the last look. */
-typedef struct sf_stop_factors {
-    double rule;
-    double by_levels[SF_DYADIC_LEVELS + 1];
-} sf_stop_factors;
-sf_stop_factors sf_stop_factors_of(const sf_render_options *options);
+/* Sets how many standard errors make half-widths: first the rule's where nothing tells how well the
+ * variance is known; then, under dyadic, by the levels of differences at the last look. */
+void sf_stop_set_factors(sf_film *film, const sf_render_options *options);
+
+/* The one that the pixel's half-width has. */
+double sf_stop_factor(const sf_film *film, const sf_render_options *options, const sf_film_pixel *pixel);
 
 /* The half-width of pixel (x, y) of the film by the rule. To be called when all pools have been
  * looked at. Infinity where fewer than two samples were taken. */
-float sf_stop_half_width(const sf_film *film, const sf_render_options *options, uint32_t x, uint32_t y,
-                         const sf_stop_factors *factors);
+float sf_stop_half_width(const sf_film *film, const sf_render_options *options, uint32_t x, uint32_t y);
 
 #endif
