@@ -32,12 +32,22 @@ typedef struct run {
 
 static bool has(const run *r, sf_stage stage) { return sf_plan_has(&r->context->scene->plan, stage); }
 
+/* Fills `out` with the source's coordinates. */
+static void fill_coordinates(run *r, const sf_coordinate_source *source, float (*out)[SF_PATHS]) {
+    const sf_coordinates *coordinates = &r->context->coordinates;
+    sf_batch *b = r->batch;
+    if (b->width == SF_LANES)
+        r->coordinates->fill(coordinates, source, b->blocks, b->block_count, out);
+    else
+        r->coordinates->fill_narrow(coordinates, source, b->blocks, b->block_count, b->width, b->first_sample,
+                                    b->contribution, out);
+}
+
 /* Fills `out` with the coordinates of the plan's next group, which is for `use`. */
 static void next_coordinates(run *r, sf_dimension_use use, float (*out)[SF_PATHS]) {
     const sf_plan *plan = &r->context->scene->plan;
     while (plan->dimensions[r->group].use != use) ++r->group;
-    const sf_coordinate_source *source = r->context->coordinates.sources + r->group++;
-    r->coordinates->fill(&r->context->coordinates, source, r->batch->blocks, r->batch->block_count, out);
+    fill_coordinates(r, r->context->coordinates.sources + r->group++, out);
 }
 
 /* The same where the vertex `bounce` may have no such group. */
@@ -66,16 +76,17 @@ static void drift(run *r, uint32_t count) {
 static void trace_camera(run *r) {
     sf_batch *b = r->batch;
     const sf_scene *scene = r->context->scene;
-    uint32_t active[SF_BLOCKS];
-    for (uint32_t i = 0; i < b->block_count; ++i) active[i] = b->blocks[i].active;
+    uint32_t active[SF_BLOCKS] = {0}, paths = sf_batch_paths(b);
+    for (uint32_t i = 0; i < b->block_count; ++i)
+        active[i * b->width / SF_LANES] |= sf_batch_wanted(b, i) << i * b->width % SF_LANES;
     next_coordinates(r, SF_DIMENSION_PIXEL, b->coordinate);
     bool lens = has(r, SF_STAGE_LENS);
     if (lens) next_coordinates(r, SF_DIMENSION_LENS, b->coordinate_by_ray);
     sf_camera_kernels_at(r->context->isa)
         ->camera(b, &r->context->camera, r->context->filter, lens ? b->coordinate_by_ray : NULL);
-    trace_nearest(r, b->block_count, active, SF_COHERENT);
+    trace_nearest(r, paths / SF_LANES, active, SF_COHERENT);
     if (b->hit_sums) sf_aov_gather(b, r->context);
-    if (has(r, SF_STAGE_FOG)) drift(r, b->block_count * SF_LANES);
+    if (has(r, SF_STAGE_FOG)) drift(r, paths);
     r->shade->first_radiance(b, scene);
     if (has(r, SF_STAGE_SKY)) sf_sky_kernels_at(r->context->isa)->first(b, scene);
 }
@@ -156,7 +167,7 @@ static uint32_t trace_surface(run *r, uint32_t bounce, uint32_t count) {
 static void play_roulette(run *r, uint32_t bounce, uint32_t count) {
     sf_coordinate_source source = sf_roulette_source(&r->context->coordinates, &r->context->scene->plan, bounce);
     sf_batch *b = r->batch;
-    r->coordinates->fill(&r->context->coordinates, &source, b->blocks, b->block_count, b->coordinate);
+    fill_coordinates(r, &source, b->coordinate);
     r->shade->roulette(b, count);
 }
 
@@ -192,7 +203,7 @@ void sf_batch_run(sf_batch *batch, const sf_render_context *context) {
     r.special = context->scene->lights.special || context->scene->light_sampling != SF_LIGHT_SAMPLING_BOTH;
     trace_camera(&r);
     bool light = has(&r, SF_STAGE_LIGHT);
-    uint32_t count = batch->block_count * SF_LANES;
+    uint32_t count = sf_batch_paths(batch);
     for (uint32_t bounce = 1; bounce <= plan->max_bounces; ++bounce) {
         bool onward = r.material || has(&r, bounce < plan->max_bounces ? SF_STAGE_SURFACE : SF_STAGE_LAST_SURFACE);
         if (!light && !onward) break;

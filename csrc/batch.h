@@ -4,9 +4,10 @@
 /* A batch: up to 1,024 paths of one cell of the frame, carried through the stages of the plan
  * together as a structure of arrays. One thread owns it; it fits that core's second-level cache.
  *
- * Lane 16 b + l of the arrays by path is sample l of block b. Arrays by ray are compact: rays
- * 0 .. count - 1 are alive, and `path` says whose they are. They are processed in whole packets
- * of 16; what the lanes past the end hold is not used. */
+ * Lane `width` b + l of the arrays by path is sample `first_sample` + l of block b: blocks of which
+ * fewer than 16 samples are wanted share packets. Arrays by ray are compact: rays 0 .. count - 1
+ * are alive, and `path` says whose they are. They are processed in whole packets of 16; what the
+ * lanes past the end hold is not used. */
 #ifndef SUNFLECK_BATCH_H
 #define SUNFLECK_BATCH_H
 
@@ -74,7 +75,8 @@ typedef struct sf_batch {
     sf_block blocks[SF_BLOCKS];
     sf_block_statistics statistics[SF_BLOCKS];
     uint32_t block_count;
-    uint32_t negative[SF_BLOCKS];                  /* bit l: the filter is negative at sample l */
+    uint32_t width, first_sample;                  /* of a block: how many lanes it has, and of which samples */
+    uint32_t negative[SF_BLOCKS];                  /* bit l: the filter is negative at lane l of the block */
     sf_vector_moments negative_moments[SF_BLOCKS]; /* of those samples; `statistics` then has the others */
     /* With SF_STAGE_SCATTER alone, of the vertices. */
     float outgoing[3][SF_PATHS]; /* to where the path comes from, unit length */
@@ -86,6 +88,16 @@ typedef struct sf_batch {
     uint32_t primitive[SF_PATHS]; /* of the mesh that was hit; with SF_STAGE_LIGHT_SHAPES alone */
     struct sf_hit_sums *hit_sums; /* by block; NULL where no AOV asks for the first hits */
 } sf_batch;
+
+/* Lanes that the blocks have, in whole packets. */
+static inline uint32_t sf_batch_paths(const sf_batch *b) {
+    return (b->block_count * b->width + SF_LANES - 1) / SF_LANES * SF_LANES;
+}
+
+/* Bit l: whether the sample of the block's lane l is wanted. */
+static inline uint32_t sf_batch_wanted(const sf_batch *b, uint32_t block) {
+    return b->blocks[block].active >> b->first_sample & ((1u << b->width) - 1);
+}
 
 /* Traces the paths of the batch's blocks: fills `statistics`. */
 void sf_batch_run(sf_batch *batch, const sf_render_context *context);

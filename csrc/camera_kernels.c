@@ -9,7 +9,7 @@
 
 /* Takes coordinate[0 .. 1] to the filter's places; the arguments after the two coordinates are the filter's. */
 #define PLACE(draw, ...)                                             \
-    for (uint32_t i = 0; i < b->block_count * SF_LANES; ++i) {       \
+    for (uint32_t i = 0; i < sf_batch_paths(b); ++i) {       \
         float place[2];                                              \
         draw(b->coordinate[0][i], b->coordinate[1][i], __VA_ARGS__); \
         b->coordinate[0][i] = place[0];                              \
@@ -20,7 +20,7 @@
 #define NOTE_SIGNS(axis)                                                                                \
     for (uint32_t block = 0; block < b->block_count; ++block) {                                         \
         SF_ALIGNED(float) value[SF_LANES];                                                              \
-        const float *x = b->coordinate[0] + block * SF_LANES, *y = b->coordinate[1] + block * SF_LANES; \
+        const float *x = b->coordinate[0] + block * b->width, *y = b->coordinate[1] + block * b->width; \
         for (int l = 0; l < SF_LANES; ++l) value[l] = axis(x[l]) * axis(y[l]);                          \
         b->negative[block] = 0;                                                                         \
         for (int l = 0; l < SF_LANES; ++l) b->negative[block] |= (uint32_t)(value[l] < 0) << l;         \
@@ -49,7 +49,7 @@ static void aim(sf_batch *b, const sf_camera_frame *camera) {
     for (uint32_t block = 0; block < b->block_count; ++block) {
         float left = (float)b->blocks[block].x - camera->half_width,
               top = camera->half_height - (float)b->blocks[block].y;
-        for (uint32_t i = block * SF_LANES; i < (block + 1) * SF_LANES; ++i) {
+        for (uint32_t i = block * b->width; i < (block + 1) * b->width; ++i) {
             float x = (left + b->coordinate[0][i]) * camera->pixel, y = (top - b->coordinate[1][i]) * camera->pixel;
             for (int c = 0; c < 3; ++c)
                 b->direction[c][i] = camera->forward[c] + x * camera->right[c] + y * camera->up[c];
@@ -58,13 +58,13 @@ static void aim(sf_batch *b, const sf_camera_frame *camera) {
 }
 
 static void leave_pinhole(sf_batch *b, const sf_camera_frame *camera) {
-    for (uint32_t i = 0; i < b->block_count * SF_LANES; ++i)
+    for (uint32_t i = 0; i < sf_batch_paths(b); ++i)
         for (int c = 0; c < 3; ++c) b->origin[c][i] = camera->position[c];
 }
 
 /* A point of the lens, and from it to where the pinhole's ray meets the focal plane. */
 static void leave_lens(sf_batch *b, const sf_camera_frame *camera, float (*lens)[SF_PATHS]) {
-    for (uint32_t i = 0; i < b->block_count * SF_LANES; ++i) {
+    for (uint32_t i = 0; i < sf_batch_paths(b); ++i) {
         float disk[2];
         sf_disk_concentric_sample(lens[0][i], lens[1][i], disk);
         float x = disk[0] * camera->aperture_radius, y = disk[1] * camera->aperture_radius;
@@ -77,7 +77,7 @@ static void leave_lens(sf_batch *b, const sf_camera_frame *camera, float (*lens)
 }
 
 static void normalize_directions(sf_batch *b) {
-    for (uint32_t i = 0; i < b->block_count * SF_LANES; ++i) {
+    for (uint32_t i = 0; i < sf_batch_paths(b); ++i) {
         float x = b->direction[0][i], y = b->direction[1][i], z = b->direction[2][i];
         float scale = 1 / sqrtf(x * x + y * y + z * z);
         b->direction[0][i] = x * scale;

@@ -9,8 +9,8 @@
 #include "platform.h"
 
 /* The key of a set of dimensions in one block, and from it of each dimension. */
-static uint64_t set_key(const sf_block *block, uint32_t set) {
-    return sf_mix64(block->key + (set + 1) * UINT64_C(0x9e3779b97f4a7c15));
+static uint64_t set_key(uint64_t block_key, uint32_t set) {
+    return sf_mix64(block_key + (set + 1) * UINT64_C(0x9e3779b97f4a7c15));
 }
 static uint64_t dimension_key(uint64_t key, uint32_t dimension) {
     return sf_mix64(key + (dimension + 1) * UINT64_C(0xd1342543de82ef95));
@@ -18,39 +18,68 @@ static uint64_t dimension_key(uint64_t key, uint32_t dimension) {
 
 /* ---- sobol ---- */
 
-/* The set's order: sample base + l is point high + low[l], low a permutation of 0 .. 15. */
-static uint32_t shuffle_block(uint32_t base, uint32_t set, uint64_t key, uint32_t low[SF_LANES]) {
-    uint32_t index[SF_LANES], seed = (uint32_t)(key >> 32);
-    if (set == 0) {
-        for (uint32_t l = 0; l < SF_LANES; ++l) low[l] = l;
-        return base;
-    }
-    for (uint32_t l = 0; l < SF_LANES; ++l) index[l] = sf_owen_scramble32(base + l, seed);
-    for (uint32_t l = 0; l < SF_LANES; ++l) low[l] = index[l] & 15u;
-    return index[0] & ~15u;
+/* The table's sum over all but the last four bits of an index. */
+static uint32_t sobol_start(const uint32_t table[4][256], uint32_t index) {
+    return table[0][index & 0xf0u] ^ table[1][index >> 8 & 255u] ^ table[2][index >> 16 & 255u] ^ table[3][index >> 24];
 }
 
-static void sobol_block(const uint32_t table[4][256], uint32_t high, const uint32_t low[SF_LANES], uint32_t seed,
-                        float *SF_RESTRICT out) {
-    uint32_t start =
-        table[0][high & 0xf0u] ^ table[1][high >> 8 & 255u] ^ table[2][high >> 16 & 255u] ^ table[3][high >> 24];
+/* Adds the last four bits of the indices to their starts, and scrambles. */
+static inline void sobol_lanes(const uint32_t table[4][256], const uint32_t starts[SF_LANES],
+                               const uint32_t index[SF_LANES], const uint32_t seeds[SF_LANES], float *SF_RESTRICT out) {
     uint32_t column0 = table[0][1], column1 = table[0][2], column2 = table[0][4], column3 = table[0][8];
     for (int l = 0; l < SF_LANES; ++l) {
-        uint32_t x = start ^ ((0u - (low[l] & 1u)) & column0) ^ ((0u - (low[l] >> 1 & 1u)) & column1) ^
-                     ((0u - (low[l] >> 2 & 1u)) & column2) ^ ((0u - (low[l] >> 3)) & column3);
-        out[l] = sf_owen_float(x, seed);
+        uint32_t x = starts[l] ^ ((0u - (index[l] & 1u)) & column0) ^ ((0u - (index[l] >> 1 & 1u)) & column1) ^
+                     ((0u - (index[l] >> 2 & 1u)) & column2) ^ ((0u - (index[l] >> 3 & 1u)) & column3);
+        out[l] = sf_owen_float(x, seeds[l]);
     }
 }
 
-static void fill_sobol(const sf_coordinates *coordinates, const sf_coordinate_source *source, const sf_block *blocks,
-                       uint32_t block_count, float (*SF_RESTRICT out)[SF_PATHS]) {
-    for (uint32_t b = 0; b < block_count; ++b) {
-        uint32_t low[SF_LANES];
-        uint64_t key = set_key(blocks + b, source->set);
-        uint32_t high = shuffle_block(blocks[b].base, source->set, key, low);
-        for (uint32_t d = 0; d < source->count; ++d)
-            sobol_block(coordinates->sobol[source->dimension + d], high, low,
-                        (uint32_t)dimension_key(key, source->dimension + d), out[d] + SF_LANES * b);
+/* The samples first_sample .. first_sample + width - 1 of the blocks, which share packets where they
+ * are fewer than 16. The set's order keeps the 16 samples of a block together: they differ in the
+ * last four bits of their indices. */
+static inline void fill_sobol(const sf_coordinates *coordinates, const sf_coordinate_source *source,
+                              const sf_block *blocks, uint32_t block_count, uint32_t width, uint32_t first_sample,
+                              float (*SF_RESTRICT out)[SF_PATHS]) {
+    uint32_t sharing = SF_LANES / width;
+    for (uint32_t b = 0; b < block_count; b += sharing) {
+        uint64_t keys[SF_LANES];
+        SF_ALIGNED(uint32_t) index[SF_LANES];
+        SF_ALIGNED(uint32_t) seeds[SF_LANES];
+        SF_ALIGNED(uint32_t) starts[SF_LANES];
+        for (uint32_t j = 0; j < sharing; ++j) {
+            const sf_block *block = blocks + (b + j < block_count ? b + j : b);
+            keys[j] = set_key(block->key, source->set);
+            for (uint32_t l = 0; l < width; ++l) {
+                index[j * width + l] = block->base + first_sample + l;
+                seeds[j * width + l] = (uint32_t)(keys[j] >> 32);
+            }
+        }
+        if (source->set > 0)
+            for (int l = 0; l < SF_LANES; ++l) index[l] = sf_owen_scramble32(index[l], seeds[l]);
+        for (uint32_t d = 0; d < source->count; ++d) {
+            const uint32_t (*table)[256] = coordinates->sobol[source->dimension + d];
+            for (uint32_t j = 0; j < sharing; ++j) {
+                uint32_t seed = (uint32_t)dimension_key(keys[j], source->dimension + d);
+                uint32_t start = sobol_start(table, index[j * width]);
+                for (uint32_t l = 0; l < width; ++l) {
+                    seeds[j * width + l] = seed;
+                    starts[j * width + l] = start;
+                }
+            }
+            sobol_lanes(table, starts, index, seeds, out[d] + b * width);
+        }
+    }
+}
+
+/* Each width with loops of its own. */
+static void fill_sobol_narrow(const sf_coordinates *coordinates, const sf_coordinate_source *source,
+                              const sf_block *blocks, uint32_t block_count, uint32_t width, uint32_t first_sample,
+                              float (*out)[SF_PATHS]) {
+    switch (width) {
+        case 1: fill_sobol(coordinates, source, blocks, block_count, 1, first_sample, out); break;
+        case 2: fill_sobol(coordinates, source, blocks, block_count, 2, first_sample, out); break;
+        case 4: fill_sobol(coordinates, source, blocks, block_count, 4, first_sample, out); break;
+        default: fill_sobol(coordinates, source, blocks, block_count, 8, first_sample, out); break;
     }
 }
 
@@ -71,7 +100,7 @@ static void fill_random(const sf_coordinate_source *source, const sf_block *bloc
                         float (*SF_RESTRICT out)[SF_PATHS]) {
     for (uint32_t b = 0; b < block_count; ++b)
         for (uint32_t d = 0; d < source->count; ++d) {
-            uint64_t key = dimension_key(set_key(blocks + b, 0), source->first + d);
+            uint64_t key = dimension_key(set_key(blocks[b].key, 0), source->first + d);
             for (uint32_t l = 0; l < SF_LANES; ++l) out[d][SF_LANES * b + l] = random_float(blocks[b].base + l, key);
         }
 }
@@ -128,9 +157,24 @@ static void fill(const sf_coordinates *coordinates, const sf_coordinate_source *
         case SF_PATTERN_HALTON:
             SF_AT_LEVEL(sf_coordinates_halton_kernels).fill(source, blocks, block_count, out);
             break;
-        case SF_PATTERN_SOBOL: fill_sobol(coordinates, source, blocks, block_count, out); break;
+        case SF_PATTERN_SOBOL: fill_sobol(coordinates, source, blocks, block_count, SF_LANES, 0, out); break;
         default: fill_random(source, blocks, block_count, out); break;
     }
 }
 
-const sf_coordinates_kernels SF_AT_LEVEL(sf_coordinates_kernels) = {fill};
+static void fill_narrow(const sf_coordinates *coordinates, const sf_coordinate_source *source, const sf_block *blocks,
+                        uint32_t block_count, uint32_t width, uint32_t first_sample, float (*scratch)[SF_PATHS],
+                        float (*out)[SF_PATHS]) {
+    if (coordinates->pattern == SF_PATTERN_SOBOL) {
+        fill_sobol_narrow(coordinates, source, blocks, block_count, width, first_sample, out);
+        return;
+    }
+    /* Others are made whole, and their lanes moved together. */
+    fill(coordinates, source, blocks, block_count, scratch);
+    for (uint32_t d = 0; d < source->count; ++d)
+        for (uint32_t b = 0; b < block_count; ++b)
+            for (uint32_t l = 0; l < width; ++l)
+                out[d][b * width + l] = scratch[d][b * SF_LANES + first_sample + l];
+}
+
+const sf_coordinates_kernels SF_AT_LEVEL(sf_coordinates_kernels) = {fill, fill_narrow};

@@ -16,4 +16,15 @@ static inline double sf_sum16(const double x[SF_LANES]) {
     return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]));
 }
 
+/* The sum of as many, a power of two of at most 16: that of 16 of which the others are 0. */
+static inline double sf_sum_lanes(const double *x, uint32_t width) {
+    switch (width) {
+        case 1: return x[0];
+        case 2: return x[0] + x[1];
+        case 4: return (x[0] + x[2]) + (x[1] + x[3]);
+        case 8: return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
+        default: return sf_sum16(x);
+    }
+}
+
 #endif

@@ -67,7 +67,7 @@ static void connect_packet(sf_batch *b, const light_lanes *lights, float (*u)[SF
         for (uint32_t l = 0; l < SF_LANES; ++l) connect(b, lights, first, l, s[l], t[l], true);
     else
         for (uint32_t l = 0; l < SF_LANES; ++l) connect(b, lights, first, l, s[l], t[l], false);
-    for (uint32_t l = 0; l < SF_LANES; ++l) b->bin[first + l] = sf_shadow_bin(b->path[first + l], s[l], t[l]);
+    for (uint32_t l = 0; l < SF_LANES; ++l) b->bin[first + l] = sf_shadow_bin(b, first + l, s[l], t[l]);
 }
 
 static inline void give_piece(light_lanes *lights, uint32_t l, const float piece[SF_LIGHT_FIELDS]) {
@@ -104,7 +104,7 @@ static inline float arriving(const sf_batch *b, int c, uint32_t i) {
 }
 
 static void add_light(sf_batch *b, uint32_t count) {
-    bool in_place = count == b->block_count * SF_LANES; /* all paths live: path[i] = i */
+    bool in_place = count == sf_batch_paths(b); /* all paths live: path[i] = i */
     for (int c = 0; c < 3; ++c)
         if (in_place)
             for (uint32_t i = 0; i < count; ++i) b->radiance[c][i] += arriving(b, c, i);

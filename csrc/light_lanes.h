@@ -18,8 +18,8 @@ static inline uint32_t sf_choose_piece(const sf_light_table *lights, float u) {
 
 /* The quarter of the cell and the cell of the light: rays of a bin start close to each other and
  * end close to each other. */
-static inline uint32_t sf_shadow_bin(uint32_t path, float s, float t) {
-    return path / (SF_LANES * SF_BLOCKS / 4) * 16 + (uint32_t)(int)(s * 4) * 4 + (uint32_t)(int)(t * 4);
+static inline uint32_t sf_shadow_bin(const sf_batch *b, uint32_t ray, float s, float t) {
+    return b->path[ray] / (b->width * SF_BLOCKS / 4) * 16 + (uint32_t)(int)(s * 4) * 4 + (uint32_t)(int)(t * 4);
 }
 
 #endif

@@ -326,7 +326,7 @@ static void connect_packet(sf_batch *SF_RESTRICT b, const shape_lanes *SF_RESTRI
         EACH_LANE connect(b, lanes, d, first, l, true);
     else
         EACH_LANE connect(b, lanes, d, first, l, false);
-    EACH_LANE b->bin[first + l] = sf_shadow_bin(b->path[first + l], d->s[l], d->t[l]);
+    EACH_LANE b->bin[first + l] = sf_shadow_bin(b, first + l, d->s[l], d->t[l]);
 }
 
 /* Lanes past the end hold nothing: they do as the first does. */

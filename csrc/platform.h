@@ -55,17 +55,28 @@ static inline void sf_aligned_free(void *memory) { free(memory); }
 /* Large arrays that start as zero bytes, on huge pages where the system has them: an image of
  * 16 million pixels is a gigabyte, and a quarter of a million faults, on small ones. NULL when
  * there is no memory. Freed with sf_pages_free and the same size. */
+#define SF_HUGE_PAGE ((size_t)1 << 21)
+static inline size_t sf_pages_size(size_t bytes) {
+    size_t unit = bytes >= 2 * SF_HUGE_PAGE ? SF_HUGE_PAGE : 1;
+    return bytes ? (bytes + unit - 1) / unit * unit : 1;
+}
 static inline void *sf_pages_alloc(size_t bytes) {
-    if (bytes == 0) bytes = 1;
-    void *memory = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    size_t size = sf_pages_size(bytes), spare = size >= 2 * SF_HUGE_PAGE ? SF_HUGE_PAGE : 0;
+    char *memory = mmap(NULL, size + spare, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED) return NULL;
+    if (spare) { /* from the first border of huge pages on */
+        size_t before = (SF_HUGE_PAGE - (uintptr_t)memory % SF_HUGE_PAGE) % SF_HUGE_PAGE;
+        if (before) munmap(memory, before);
+        munmap(memory + before + size, spare - before);
+        memory += before;
+    }
 #ifdef MADV_HUGEPAGE
-    (void)madvise(memory, bytes, MADV_HUGEPAGE); /* a hint: refused by kernels without them */
+    (void)madvise(memory, size, MADV_HUGEPAGE); /* a hint: refused by kernels without them */
 #endif
     return memory;
 }
 static inline void sf_pages_free(void *memory, size_t bytes) {
-    if (memory) munmap(memory, bytes ? bytes : 1);
+    if (memory) munmap(memory, sf_pages_size(bytes));
 }
 
 /* Copies to memory that will not be read soon, past the caches where the processor can: a store of
@@ -178,8 +189,12 @@ static inline void sf_yield(void) { (void)sched_yield(); }
 /* What the system says of an errno; the thread's own text, where the system keeps one. */
 static inline const char *sf_system_message(int number) { return strerror(number); }
 
-/* How many bits of x are 1. */
-static inline unsigned sf_count_bits(uint32_t x) { return (unsigned)__builtin_popcount(x); }
+/* How many bits of x are 1; the compiler's own is a call where the processor may lack the instruction. */
+static inline unsigned sf_count_bits(uint32_t x) {
+    x -= x >> 1 & 0x55555555u;
+    x = (x & 0x33333333u) + (x >> 2 & 0x33333333u);
+    return ((x + (x >> 4)) & 0x0f0f0f0fu) * 0x01010101u >> 24;
+}
 
 /* Seconds on a clock that never steps back. */
 static inline double sf_seconds_now(void) {

@@ -87,12 +87,28 @@ static void choose_keys(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell, u
     }
 }
 
+typedef struct block_layout {
+    uint32_t width, first_sample;
+} block_layout;
+
+/* How the round's blocks that begin with sample `n` lie in the batch: as wide as the samples wanted
+ * of them are many. */
+static block_layout lay_out_blocks(const sf_rounds *r, uint32_t n) {
+    uint32_t last = block_end(r, n) - 1, width = 1;
+    while (n / width != last / width) width *= 2;
+    return (block_layout){width, n % SF_LANES / width * width};
+}
+
 static void sample_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
     if (sf_atomic_load(&r->state) != SF_RUNNING) return;
     uint64_t active = r->active[cell], keys[SF_CELL_PIXELS];
     sf_batch *batch = &worker->batch;
     choose_keys(r, worker, cell, active, keys);
-    for (uint32_t n = r->from; n < r->to; n = n / SF_LANES * SF_LANES + SF_LANES)
+    for (uint32_t n = r->from; n < r->to; n = n / SF_LANES * SF_LANES + SF_LANES) {
+        block_layout layout = lay_out_blocks(r, n);
+        if (batch->width != layout.width) flush_batch(r, worker);
+        batch->width = layout.width;
+        batch->first_sample = layout.first_sample;
         for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m) {
             if (!(active >> m & 1u)) continue;
             uint32_t first = skip_taken(r, cell, m, n);
@@ -102,6 +118,7 @@ static void sample_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
             flush_batch(r, worker);
             if (sf_atomic_load(&r->state) != SF_RUNNING) return;
         }
+    }
     flush_batch(r, worker);
 }
 

@@ -38,7 +38,7 @@ static inline float front_side(const sf_batch *b, uint32_t i) {
 }
 
 static void first_radiance(sf_batch *b, const sf_scene *scene) {
-    uint32_t n = b->block_count * SF_LANES, miss = scene->mesh_table.miss;
+    uint32_t n = sf_batch_paths(b), miss = scene->mesh_table.miss;
     for (uint32_t i = 0; i < n; ++i) b->covered[i] = b->mesh[i] == miss ? 0.0f : 1.0f;
     if (sf_plan_has(&scene->plan, SF_STAGE_EMISSION)) {
         look_up(&scene->mesh_table, SF_MESH_EMISSION_R, 3, b->mesh, n, b->emission);
@@ -121,7 +121,7 @@ static void place_vertices(sf_batch *b, const sf_scene *scene, uint32_t n) {
 }
 
 static void first_vertex(sf_batch *b, const sf_scene *scene) {
-    uint32_t n = b->block_count * SF_LANES;
+    uint32_t n = sf_batch_paths(b);
     place_vertices(b, scene, n);
     for (uint32_t i = 0; i < n; ++i) {
         float r = b->albedo[0][i], g = b->albedo[1][i], blue = b->albedo[2][i];

@@ -42,7 +42,7 @@ static void gather_sky(const sf_sky *sky, const float w[3], sf_found_share share
 
 static void first(sf_batch *b, const sf_scene *scene) {
     uint32_t miss = scene->mesh_table.miss;
-    for (uint32_t i = 0; i < b->block_count * SF_LANES; ++i) {
+    for (uint32_t i = 0; i < sf_batch_paths(b); ++i) {
         if (b->mesh[i] != miss) continue;
         const float w[3] = {b->direction[0][i], b->direction[1][i], b->direction[2][i]};
         float radiance[3] = {0, 0, 0};

@@ -192,6 +192,7 @@ static void test_each_level_sums_first_hits_alike_and_keeps_nan_out(void **state
     assert_non_null(batch);
     memset(batch, 0, sizeof *batch);
     batch->block_count = 2;
+    batch->width = SF_LANES;
     for (uint32_t i = 0; i < 2 * SF_LANES; ++i) {
         batch->mesh[i] = i % 3;
         batch->distance[i] = i % 3 == 2 ? INFINITY : 3 + 0.1f * (float)i;

@@ -533,6 +533,7 @@ static void test_samples_that_are_not_finite_are_counted_and_left_out(void **sta
     for (int isa = SF_ISA_BASELINE; isa <= (int)sf_isa_active(); ++isa) {
         memset(batch, 0, sizeof *batch);
         batch->block_count = 2;
+        batch->width = SF_LANES;
         for (uint32_t i = 0; i < 2 * SF_LANES; ++i)
             for (int c = 0; c < 3; ++c) batch->radiance[c][i] = (float)(c + 1);
         batch->blocks[0].active = 0xffff;
