@@ -36,6 +36,7 @@ from measure import ROOT, describe_machine, state
 
 SIZE = 256
 WORK = ROOT / "build/peers"
+PAUSE = 0.15  # seconds: threads of the renderer before, which wait for more work awake, go to sleep
 RESULTS = WORK / "results.json"
 TARGETS = (1e-3, 1e-4, 1e-5, 2.5e-6)
 LEAST = {"penumbra": 2.5e-6, "defocus": 1e-5, "cornell": 1e-4}  # the reference of cornell is itself off by 7e-6
@@ -146,6 +147,7 @@ def run_once(scene: str, who: list[str], workers: dict[str, Worker], run: str, a
         for name in list(going):
             renderer, mode = name.split(" ", 1)
             value = going[name].pop(0)
+            time.sleep(PAUSE)
             seconds, samples, picture = workers[renderer].render(mode, value, seed)
             # LuxCore's rows lie one lower: row y is what the others have as row y - 1.
             shifted = renderer == "luxcore"

@@ -173,8 +173,7 @@ static void fill_narrow(const sf_coordinates *coordinates, const sf_coordinate_s
     fill(coordinates, source, blocks, block_count, scratch);
     for (uint32_t d = 0; d < source->count; ++d)
         for (uint32_t b = 0; b < block_count; ++b)
-            for (uint32_t l = 0; l < width; ++l)
-                out[d][b * width + l] = scratch[d][b * SF_LANES + first_sample + l];
+            for (uint32_t l = 0; l < width; ++l) out[d][b * width + l] = scratch[d][b * SF_LANES + first_sample + l];
 }
 
 const sf_coordinates_kernels SF_AT_LEVEL(sf_coordinates_kernels) = {fill, fill_narrow};

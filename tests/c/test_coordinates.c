@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /* coordinates: the renderer's blocks of Halton's points are the stateless ones, bit for bit, at
- * every instruction-set level; the patterns that can be rendered with. */
+ * every instruction-set level; blocks that share packets keep their samples. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -21,7 +21,7 @@ static sf_coordinates coordinates;
 static float made[2][SF_PATHS], expected[2][SF_PATHS];
 
 /* As long a path as there is: of each bounce a light, a surface, a choice and a lobe. */
-static void prepare(void) {
+static void prepare(sf_pattern pattern) {
     sf_plan plan;
     sf_error error;
     memset(&plan, 0, sizeof plan);
@@ -32,7 +32,7 @@ static void prepare(void) {
         plan.dimensions_per_path += count;
     }
     plan.dimension_group_count = GROUPS;
-    assert_int_equal(sf_coordinates_init(&coordinates, SF_PATTERN_HALTON, &plan, 0, 1, &error), SF_STATUS_OK);
+    assert_int_equal(sf_coordinates_init(&coordinates, pattern, &plan, 48, 1, &error), SF_STATUS_OK);
 }
 
 static void expect_stateless(uint32_t group, const sf_block blocks[SF_BLOCKS]) {
@@ -80,7 +80,7 @@ static void choose_blocks(uint32_t group, uint64_t seed, sf_block blocks[SF_BLOC
 static void test_halton_is_the_stateless_one(void **state) {
     (void)state;
     sf_block blocks[SF_BLOCKS];
-    prepare();
+    prepare(SF_PATTERN_HALTON);
     for (uint32_t group = 0; group < GROUPS; ++group)
         for (uint64_t set = 0; set < (group < 10 ? 24 / TEST_STRIDE + 1 : 1); ++set) {
             choose_blocks(group, sf_hash64(group, set), blocks);
@@ -88,9 +88,45 @@ static void test_halton_is_the_stateless_one(void **state) {
         }
 }
 
+/* Of blocks that share packets every lane is what it is in the whole block. */
+static void expect_same_lanes(const sf_coordinate_source *source, const sf_block *blocks, uint32_t count,
+                              uint32_t width, uint32_t first_sample, sf_isa isa) {
+    static float scratch[2][SF_PATHS];
+    const sf_coordinates_kernels *kernels = sf_coordinates_kernels_at(isa);
+    kernels->fill(&coordinates, source, blocks, count, expected);
+    kernels->fill_narrow(&coordinates, source, blocks, count, width, first_sample, scratch, made);
+    for (uint32_t d = 0; d < source->count; ++d)
+        for (uint32_t i = 0; i < count * width; ++i) {
+            uint32_t whole = i / width * SF_LANES + first_sample + i % width;
+            if (memcmp(made[d] + i, expected[d] + whole, sizeof(float)) != 0)
+                fail_msg("level %d, pattern %d, dimension %u, width %u: lane %u is %a, not %a", (int)isa,
+                         (int)coordinates.pattern, source->first + d, width, i, made[d][i], expected[d][whole]);
+        }
+}
+
+static void test_blocks_that_share_packets_keep_their_samples(void **state) {
+    (void)state;
+    static const sf_pattern patterns[] = {SF_PATTERN_SOBOL, SF_PATTERN_RANDOM, SF_PATTERN_JITTERED, SF_PATTERN_UNIFORM,
+                                          SF_PATTERN_HALTON};
+    static const uint32_t counts[] = {1, 7, SF_BLOCKS}; /* packets that the blocks do not fill, too */
+    sf_block blocks[SF_BLOCKS];
+    for (size_t p = 0; p < sizeof patterns / sizeof *patterns; ++p) {
+        prepare(patterns[p]);
+        for (uint32_t b = 0; b < SF_BLOCKS; ++b)
+            blocks[b] = (sf_block){.key = sf_hash64(5, b), .base = (uint32_t)sf_hash64(6, b) & 0xffff0u};
+        for (uint32_t group = 0; group < 8; ++group)
+            for (uint32_t width = 1; width < SF_LANES; width *= 2)
+                for (int i = 0; i < 9; ++i)
+                    expect_same_lanes(coordinates.sources + group, blocks, counts[i / 3], width,
+                                      (uint32_t)(i * 5) % SF_LANES / width * width,
+                                      (sf_isa)(i % ((int)sf_isa_active() + 1)));
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_halton_is_the_stateless_one),
+        cmocka_unit_test(test_blocks_that_share_packets_keep_their_samples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
