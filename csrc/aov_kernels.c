@@ -14,7 +14,8 @@ static void albedo(const sf_batch *b, const sf_mesh_table *meshes, sf_hit_sums *
             const float *column = meshes->columns[SF_MESH_ALBEDO_R + c];
             const uint32_t *mesh = b->mesh + block * b->width;
             SF_ROLLED
-            for (int l = 0; l < SF_LANES; ++l) value[l] = l < (int)b->width ? (double)column[mesh[l]] : 0; /* 0 in the row of a miss */
+            for (int l = 0; l < SF_LANES; ++l)
+                value[l] = l < (int)b->width ? (double)column[mesh[l]] : 0; /* 0 in the row of a miss */
             out[block].albedo[c] = sf_sum16(value);
         }
 }

@@ -9,7 +9,7 @@
 
 /* Takes coordinate[0 .. 1] to the filter's places; the arguments after the two coordinates are the filter's. */
 #define PLACE(draw, ...)                                             \
-    for (uint32_t i = 0; i < sf_batch_paths(b); ++i) {       \
+    for (uint32_t i = 0; i < sf_batch_paths(b); ++i) {               \
         float place[2];                                              \
         draw(b->coordinate[0][i], b->coordinate[1][i], __VA_ARGS__); \
         b->coordinate[0][i] = place[0];                              \
