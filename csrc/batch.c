@@ -30,12 +30,15 @@ typedef struct run {
     uint32_t group;                      /* the plan's next group of dimensions */
 } run;
 
+static void begin(run *r, sf_work work) { sf_work_begin(&r->batch->clock, work); }
+
 static bool has(const run *r, sf_stage stage) { return sf_plan_has(&r->context->scene->plan, stage); }
 
 /* Fills `out` with the source's coordinates. */
 static void fill_coordinates(run *r, const sf_coordinate_source *source, float (*out)[SF_PATHS]) {
     const sf_coordinates *coordinates = &r->context->coordinates;
     sf_batch *b = r->batch;
+    begin(r, SF_WORK_COORDINATES);
     if (b->width == SF_LANES)
         r->coordinates->fill(coordinates, source, b->blocks, b->block_count, out);
     else
@@ -63,6 +66,7 @@ static void optional_coordinates(run *r, sf_dimension_use use, uint32_t bounce, 
 /* The nearest hits, with the normals of what is round. */
 static void trace_nearest(run *r, uint32_t packets, const uint32_t *active, sf_coherence coherence) {
     const sf_scene *scene = r->context->scene;
+    begin(r, coherence == SF_COHERENT ? SF_WORK_CAMERA_RAYS : SF_WORK_SURFACE_RAYS);
     sf_trace_nearest(r->batch, scene, packets, active, coherence);
     if (has(r, SF_STAGE_ROUND)) sf_round_kernels_at(r->context->isa)->face(r->batch, scene, packets * SF_LANES);
 }
@@ -82,9 +86,11 @@ static void trace_camera(run *r) {
     next_coordinates(r, SF_DIMENSION_PIXEL, b->coordinate);
     bool lens = has(r, SF_STAGE_LENS);
     if (lens) next_coordinates(r, SF_DIMENSION_LENS, b->coordinate_by_ray);
+    begin(r, SF_WORK_CAMERA);
     sf_camera_kernels_at(r->context->isa)
         ->camera(b, &r->context->camera, r->context->filter, lens ? b->coordinate_by_ray : NULL);
     trace_nearest(r, paths / SF_LANES, active, SF_COHERENT);
+    begin(r, SF_WORK_VERTICES);
     if (b->hit_sums) sf_aov_gather(b, r->context);
     if (has(r, SF_STAGE_FOG)) drift(r, paths);
     r->shade->first_radiance(b, scene);
@@ -100,6 +106,7 @@ static void connect_lights(run *r, uint32_t bounce, uint32_t count) {
     const sf_scene *scene = r->context->scene;
     bool onward = bounce < plan->max_bounces || has(r, SF_STAGE_LAST_SURFACE);
     bool weigh = onward && has(r, SF_STAGE_WEIGHT);
+    begin(r, SF_WORK_LIGHT);
     if (r->material) {
         r->shapes->bare_light(b, scene, count);
         r->material->respond(b, scene, onward);
@@ -107,7 +114,9 @@ static void connect_lights(run *r, uint32_t bounce, uint32_t count) {
         (r->special ? r->shapes->light : r->light->light)(b, scene, count, weigh);
     if (has(r, SF_STAGE_FOG)) sf_fog_kernels_at(r->context->isa)->dim(b, scene, count);
     uint32_t rays = r->light->sort_shadow_rays(b, count);
+    begin(r, SF_WORK_SHADOW_RAYS);
     sf_trace_shadow(b, scene, r->material ? b->origin : b->point, rays);
+    begin(r, SF_WORK_LIGHT);
     r->light->add_light(b, count);
 }
 
@@ -137,6 +146,7 @@ static uint32_t scatter(run *r, uint32_t bounce, uint32_t count) {
     }
     optional_coordinates(r, SF_DIMENSION_SURFACE, bounce, b->coordinate);
     optional_coordinates(r, SF_DIMENSION_LOBE, bounce, b->coordinate + 2);
+    begin(r, SF_WORK_SURFACE);
     if (b->scatter_first[SF_SCATTER_DIFFUSE + 1]) r->shade->surface(b, count);
     r->material->scatter(b, scene, count);
     return count;
@@ -150,6 +160,7 @@ static uint32_t trace_surface(run *r, uint32_t bounce, uint32_t count) {
         count = scatter(r, bounce, count);
     else {
         next_coordinates(r, SF_DIMENSION_SURFACE, b->coordinate);
+        begin(r, SF_WORK_SURFACE);
         r->shade->surface(b, count);
     }
     uint32_t packets = (count + SF_LANES - 1) / SF_LANES;
@@ -159,6 +170,7 @@ static uint32_t trace_surface(run *r, uint32_t bounce, uint32_t count) {
     if (r->material)
         for (uint32_t i = 0; i < count; ++i) active[i / SF_LANES] &= ~((b->alive[i] ^ 1u) << i % SF_LANES);
     trace_nearest(r, packets, active, SF_INCOHERENT);
+    begin(r, SF_WORK_SURFACE);
     if (has(r, SF_STAGE_FOG)) drift(r, count);
     add_found(r, count);
     return count;
@@ -207,13 +219,16 @@ void sf_batch_run(sf_batch *batch, const sf_render_context *context) {
     for (uint32_t bounce = 1; bounce <= plan->max_bounces; ++bounce) {
         bool onward = r.material || has(&r, bounce < plan->max_bounces ? SF_STAGE_SURFACE : SF_STAGE_LAST_SURFACE);
         if (!light && !onward) break;
+        begin(&r, SF_WORK_VERTICES);
         place_vertices(&r, bounce, count);
         if (context->roulette && bounce >= context->roulette) play_roulette(&r, bounce, count);
+        begin(&r, SF_WORK_VERTICES);
         count = compact(&r, count);
         if (count == 0) break;
         if (light) connect_lights(&r, bounce, count);
         if (onward) count = trace_surface(&r, bounce, count);
     }
+    begin(&r, SF_WORK_SUMS);
     const sf_gather_kernels *gather = sf_gather_kernels_at(context->isa);
     if (context->signed_filter)
         gather->gather_by_sign(batch);

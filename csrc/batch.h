@@ -18,6 +18,7 @@
 #include "platform.h"
 #include "scene_data.h"
 #include "sunfleck/render.h"
+#include "work_clock.h"
 
 typedef struct sf_camera_frame {
     float position[3], forward[3], right[3], up[3]; /* an orthonormal frame */
@@ -87,6 +88,7 @@ typedef struct sf_batch {
 
     uint32_t primitive[SF_PATHS]; /* of the mesh that was hit; with SF_STAGE_LIGHT_SHAPES alone */
     struct sf_hit_sums *hit_sums; /* by block; NULL where no AOV asks for the first hits */
+    sf_work_clock clock;
 } sf_batch;
 
 /* Lanes that the blocks have, in whole packets. */

@@ -27,6 +27,12 @@ const char *sf_pixel_filter_name(sf_pixel_filter filter) {
     return (unsigned)filter < sizeof names / sizeof *names ? names[filter] : NULL;
 }
 
+const char *sf_work_name(sf_work work) {
+    static const char *const names[] = {"coordinates", "camera", "camera rays", "shadow rays", "surface rays",
+                                        "vertices",    "light",  "surface",     "sums",        "film"};
+    return (unsigned)work < SF_WORK_COUNT ? names[work] : NULL;
+}
+
 const char *sf_stop_rule_name(sf_stop_rule rule) {
     static const char *const names[] = {"standard-error", "replicates", "dyadic"};
     return (unsigned)rule < 3 ? names[rule] : NULL;

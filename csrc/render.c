@@ -69,6 +69,7 @@ static sf_status hire_workers(sf_rounds *r, sf_error *error) {
         uint64_t stream = r->options.seeds == SF_SEEDS_THREAD ? i : 0;
         sf_status status = sf_rng_init(&r->workers[i].stream, SF_RNG_XOSHIRO256PP, r->options.seed, stream, error);
         if (status) return status;
+        r->workers[i].batch.clock = (sf_work_clock){.runs = r->options.profile != 0, .at = SF_WORK_FILM};
         if (r->context.aovs & SF_AOVS_OF_HITS)
             r->workers[i].batch.hit_sums = r->film->aovs->hits + (size_t)i * SF_BLOCKS;
     }
@@ -169,6 +170,9 @@ static void finish(sf_rounds *r) {
     summary->traced_samples = sf_rounds_samples(r);
     summary->confidence = r->options.confidence;
     summary->threads = r->options.threads;
+    for (uint32_t i = 0; i < r->options.threads; ++i)
+        for (int work = 0; work < SF_WORK_COUNT; ++work)
+            summary->work_seconds[work] += r->workers[i].batch.clock.seconds[work];
     if (!r->level_fixed) sf_rounds_measure_level(r);
     sf_pool_run(r->pool, r->film->crop_height, resolve_row, sf_rounds_wake, r);
     sf_film_summarize_rows(r->film);

@@ -33,6 +33,7 @@ static void flush_batch(sf_rounds *r, sf_rounds_worker *worker) {
     sf_batch *batch = &worker->batch;
     if (batch->block_count == 0) return;
     sf_batch_run(batch, &r->context);
+    sf_work_begin(&batch->clock, SF_WORK_FILM);
     size_t samples = 0;
     for (uint32_t i = 0; i < batch->block_count; ++i) {
         add_block(r, i, batch);
@@ -103,6 +104,7 @@ static void sample_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
     if (sf_atomic_load(&r->state) != SF_RUNNING) return;
     uint64_t active = r->active[cell], keys[SF_CELL_PIXELS];
     sf_batch *batch = &worker->batch;
+    sf_work_resume(&batch->clock);
     choose_keys(r, worker, cell, active, keys);
     for (uint32_t n = r->from; n < r->to; n = n / SF_LANES * SF_LANES + SF_LANES) {
         block_layout layout = lay_out_blocks(r, n);
@@ -120,6 +122,7 @@ static void sample_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
         }
     }
     flush_batch(r, worker);
+    sf_work_begin(&batch->clock, SF_WORK_FILM);
 }
 
 void sf_rounds_sample_tile(void *user, unsigned worker, size_t item) {

@@ -89,7 +89,7 @@ nb::typed<nb::dict, nb::str, nb::str> attributes_of(const film_handle &self) {
 
 nb::typed<nb::dict, nb::str, nb::any> summary_of(const film_handle &self) {
     sf_film_summary s = sf_film_summarize(self.film);
-    nb::dict reasons, d;
+    nb::dict reasons, work, d;
     for (int k = 0; k < SF_STOP_REASON_COUNT; ++k)
         reasons[sf_stop_reason_name(static_cast<sf_stop_reason>(k))] = s.reasons[k];
     d["pixels"] = s.pixels;
@@ -106,6 +106,9 @@ nb::typed<nb::dict, nb::str, nb::any> summary_of(const film_handle &self) {
     d["seconds"] = s.seconds;
     d["threads"] = s.threads;
     d["rounds"] = s.rounds;
+    for (int k = 0; k < SF_WORK_COUNT; ++k)
+        if (s.work_seconds[k] > 0) work[sf_work_name(static_cast<sf_work>(k))] = s.work_seconds[k];
+    d["work"] = work;
     return d;
 }
 
@@ -189,7 +192,7 @@ film_handle *render(const scene_handle &scene, uint32_t width, uint32_t height, 
                     double confidence, uint32_t min_spp, uint32_t max_spp, uint64_t samples, double seconds,
                     const std::string &pattern, const std::string &pixel_filter, const std::string &stop, bool unbiased,
                     const std::string &seeds, uint64_t seed, uint32_t threads, uint32_t tile_size, uint32_t roulette,
-                    const std::vector<std::string> &aovs, std::optional<pixel_mask> mask,
+                    bool profile, const std::vector<std::string> &aovs, std::optional<pixel_mask> mask,
                     const std::optional<std::string> &checkpoint, double checkpoint_seconds, nb::object notice,
                     nb::object observer) {
     watcher watch{observer, notice, false, nullptr};
@@ -215,6 +218,7 @@ film_handle *render(const scene_handle &scene, uint32_t width, uint32_t height, 
     options.threads = threads;
     options.tile_size = tile_size;
     options.roulette = roulette;
+    options.profile = profile;
     for (const std::string &name : aovs) options.aovs |= 1u << find("aovs", name, sf_aov_name);
     if (mask) set_mask(options, *mask);
     options.progress = on_progress;
@@ -305,7 +309,7 @@ void bind_render(nb::module_ &m) {
     m.def("render", &render, nb::rv_policy::take_ownership, "scene"_a, nb::kw_only(), "width"_a, "height"_a, "crop"_a,
           "spp"_a, "start"_a, "relative_tolerance"_a, "absolute_tolerance"_a, "confidence"_a, "min_spp"_a, "max_spp"_a,
           "samples"_a, "seconds"_a, "pattern"_a, "pixel_filter"_a, "stop"_a, "unbiased"_a, "seeds"_a, "seed"_a,
-          "threads"_a, "tile_size"_a, "roulette"_a, "aovs"_a, "mask"_a.none(), "checkpoint"_a.none(),
+          "threads"_a, "tile_size"_a, "roulette"_a, "profile"_a, "aovs"_a, "mask"_a.none(), "checkpoint"_a.none(),
           "checkpoint_seconds"_a, "notice"_a, "progress"_a.none());
     m.def("load_film", &load_film, nb::rv_policy::take_ownership, "path"_a);
     m.def("merge_films", &merge_films, nb::rv_policy::take_ownership, "films"_a);

@@ -133,6 +133,7 @@ def _add_render(commands: argparse._SubParsersAction[_Parser]) -> None:
     work = parser.add_argument_group("work")
     add = work.add_argument
     add("--threads", type=int, metavar="N", help="default: one for each processor")
+    add("--profile", action="store_true", help="with the summary, what the threads' time went to")
     add("--aov", default="", metavar="NAMES", help=f"also {', '.join(sf.AOVS)}: any of these, with commas between")
     add("--crop", type=int, nargs=4, metavar=("X0", "Y0", "X1", "Y1"), help="half open, in pixels of the full frame")
     add("--checkpoint", metavar="FILE", help="keep the render's state there, and go on from it where it exists")
@@ -257,6 +258,7 @@ def _rendered(given: argparse.Namespace) -> sf.Image:
         pattern=given.pattern,
         pixel_filter=given.pixel_filter,
         roulette=given.roulette,
+        profile=given.profile,
         stop=given.stop,
         unbiased=given.unbiased,
         seeds=given.seeds,

@@ -195,6 +195,8 @@ typedef struct sf_render_options {
                           (default). At each such vertex a path goes on with the probability of its throughput's
                           largest channel, 1/32 at least and 1 at most, by which it is divided: the mean stays.
                           Takes a sample dimension at each; costs nothing where it is 0 */
+    int profile;       /* default 0; else the summary tells what the threads' time went to, see sf_work. Costs up to
+                          1 % of the time; no bit of the film depends on it */
 } sf_render_options;
 
 sf_render_options sf_render_options_default(void);
@@ -278,6 +280,24 @@ size_t sf_film_attribute_count(const sf_film *film);
 sf_attribute sf_film_attribute(const sf_film *film, size_t index);
 
 /* What a render came to, over the film's pixels; those that a mask leaves out count nowhere. */
+/* What a thread does. */
+typedef enum sf_work {
+    SF_WORK_COORDINATES = 0, /* the pattern's points */
+    SF_WORK_CAMERA,          /* making rays from them */
+    SF_WORK_CAMERA_RAYS,     /* the three kinds of rays: tracing them, in Embree, and packing them for it */
+    SF_WORK_SHADOW_RAYS,
+    SF_WORK_SURFACE_RAYS,
+    SF_WORK_VERTICES, /* what was hit, and which paths go on */
+    SF_WORK_LIGHT,    /* sampling lights, ordering shadow rays, adding what arrives */
+    SF_WORK_SURFACE,  /* sampling materials, and the light that surface rays find */
+    SF_WORK_SUMS,     /* statistics of blocks of samples */
+    SF_WORK_FILM,     /* adding them to the pixels; making up the next batch */
+    SF_WORK_COUNT
+} sf_work;
+/* "coordinates", "camera", "camera rays", "shadow rays", "surface rays", "vertices", "light", "surface",
+ * "sums", "film"; NULL for a number beyond. */
+const char *sf_work_name(sf_work work);
+
 typedef struct sf_film_summary {
     uint64_t pixels;
     uint64_t samples;                       /* in the film's pixels */
@@ -292,6 +312,8 @@ typedef struct sf_film_summary {
     double mean_half_width;
     double seconds; /* of the render call */
     uint32_t threads, rounds;
+    double work_seconds[SF_WORK_COUNT]; /* of all threads, by sf_work; 0 unless options.profile. What is left of
+                                           threads * seconds is decisions, their barriers, and waiting */
 } sf_film_summary;
 sf_film_summary sf_film_summarize(const sf_film *film);
 
