@@ -23,13 +23,21 @@ static uint32_t sobol_start(const uint32_t table[4][256], uint32_t index) {
     return table[0][index & 0xf0u] ^ table[1][index >> 8 & 255u] ^ table[2][index >> 16 & 255u] ^ table[3][index >> 24];
 }
 
-/* Adds the last four bits of the indices to their starts, and scrambles. */
+/* Of 0 .. 15, their four bits reversed, at the top. */
+static const uint32_t reversed_lanes[SF_LANES] = {
+    0x0u << 28, 0x8u << 28, 0x4u << 28, 0xcu << 28, 0x2u << 28, 0xau << 28, 0x6u << 28, 0xeu << 28,
+    0x1u << 28, 0x9u << 28, 0x5u << 28, 0xdu << 28, 0x3u << 28, 0xbu << 28, 0x7u << 28, 0xfu << 28};
+
+/* Adds the last four bits of the indices, which are given with their bits reversed, to their starts,
+ * and scrambles. */
 static inline void sobol_lanes(const uint32_t table[4][256], const uint32_t starts[SF_LANES],
-                               const uint32_t index[SF_LANES], const uint32_t seeds[SF_LANES], float *SF_RESTRICT out) {
+                               const uint32_t reversed[SF_LANES], const uint32_t seeds[SF_LANES],
+                               float *SF_RESTRICT out) {
     uint32_t column0 = table[0][1], column1 = table[0][2], column2 = table[0][4], column3 = table[0][8];
     for (int l = 0; l < SF_LANES; ++l) {
-        uint32_t x = starts[l] ^ ((0u - (index[l] & 1u)) & column0) ^ ((0u - (index[l] >> 1 & 1u)) & column1) ^
-                     ((0u - (index[l] >> 2 & 1u)) & column2) ^ ((0u - (index[l] >> 3 & 1u)) & column3);
+        uint32_t i = reversed[l];
+        uint32_t x = starts[l] ^ ((0u - (i >> 31)) & column0) ^ ((0u - (i >> 30 & 1u)) & column1) ^
+                     ((0u - (i >> 29 & 1u)) & column2) ^ ((0u - (i >> 28 & 1u)) & column3);
         out[l] = sf_owen_float(x, seeds[l]);
     }
 }
@@ -43,30 +51,32 @@ static inline void fill_sobol(const sf_coordinates *coordinates, const sf_coordi
     uint32_t sharing = SF_LANES / width;
     for (uint32_t b = 0; b < block_count; b += sharing) {
         uint64_t keys[SF_LANES];
-        SF_ALIGNED(uint32_t) index[SF_LANES];
+        uint32_t indices[SF_LANES];
+        SF_ALIGNED(uint32_t) reversed[SF_LANES];
         SF_ALIGNED(uint32_t) seeds[SF_LANES];
         SF_ALIGNED(uint32_t) starts[SF_LANES];
         for (uint32_t j = 0; j < sharing; ++j) {
             const sf_block *block = blocks + (b + j < block_count ? b + j : b);
+            uint32_t base = sf_reverse_bits32(block->base), seed;
             keys[j] = set_key(block->key, source->set);
+            seed = (uint32_t)(keys[j] >> 32);
             for (uint32_t l = 0; l < width; ++l) {
-                index[j * width + l] = block->base + first_sample + l;
-                seeds[j * width + l] = (uint32_t)(keys[j] >> 32);
+                uint32_t index = base | reversed_lanes[first_sample + l];
+                reversed[j * width + l] = source->set ? sf_owen_hash32(index, seed) : index;
             }
+            indices[j] = sf_reverse_bits32(reversed[j * width]);
         }
-        if (source->set > 0)
-            for (int l = 0; l < SF_LANES; ++l) index[l] = sf_owen_scramble32(index[l], seeds[l]);
         for (uint32_t d = 0; d < source->count; ++d) {
             const uint32_t (*table)[256] = coordinates->sobol[source->dimension + d];
             for (uint32_t j = 0; j < sharing; ++j) {
                 uint32_t seed = (uint32_t)dimension_key(keys[j], source->dimension + d);
-                uint32_t start = sobol_start(table, index[j * width]);
+                uint32_t start = sobol_start(table, indices[j]);
                 for (uint32_t l = 0; l < width; ++l) {
                     seeds[j * width + l] = seed;
                     starts[j * width + l] = start;
                 }
             }
-            sobol_lanes(table, starts, index, seeds, out[d] + b * width);
+            sobol_lanes(table, starts, reversed, seeds, out[d] + b * width);
         }
     }
 }
