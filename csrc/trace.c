@@ -30,8 +30,26 @@ static void take_hits(sf_batch *b, const sf_scene *scene, const struct RTCRayHit
         memcpy(b->primitive + first, rays->hit.primID, sizeof rays->hit.primID);
 }
 
-void sf_trace_nearest(sf_batch *b, const sf_scene *scene, uint32_t packets, const uint32_t *active,
-                      sf_coherence coherence) {
+/* The same where there are instances. Embree gives the instance, the number of its first mesh, and the
+ * mesh within it; its normals are the prototype's. */
+static void take_placed_hits(sf_batch *b, const sf_scene *scene, const struct RTCRayHit16 *rays, uint32_t first) {
+    uint32_t miss = scene->mesh_table.miss;
+    memcpy(b->distance + first, rays->ray.tfar, sizeof rays->ray.tfar);
+    for (int l = 0; l < SF_LANES; ++l) {
+        uint32_t instance = rays->hit.instID[0][l], mesh = rays->hit.geomID[l];
+        mesh += instance == RTC_INVALID_GEOMETRY_ID ? 0 : instance;
+        b->mesh[first + l] = mesh = mesh < miss ? mesh : miss;
+        const float *turn = scene->turns[mesh];
+        float x = rays->hit.Ng_x[l], y = rays->hit.Ng_y[l], z = rays->hit.Ng_z[l];
+        for (int c = 0; c < 3; ++c)
+            b->hit_normal[c][first + l] = turn[3 * c] * x + turn[3 * c + 1] * y + turn[3 * c + 2] * z;
+    }
+    if (sf_plan_has(&scene->plan, SF_STAGE_LIGHT_SHAPES))
+        memcpy(b->primitive + first, rays->hit.primID, sizeof rays->hit.primID);
+}
+
+static inline void trace_packets(sf_batch *b, const sf_scene *scene, uint32_t packets, const uint32_t *active,
+                                 sf_coherence coherence, const bool placed) {
     SF_ALIGNED(struct RTCRayHit16) rays;
     SF_ALIGNED(int) valid[SF_LANES];
     memset(&rays, 0, sizeof rays);
@@ -49,8 +67,16 @@ void sf_trace_nearest(sf_batch *b, const sf_scene *scene, uint32_t packets, cons
         memset(rays.hit.instID, 0xff, sizeof rays.hit.instID);
         set_valid(valid, active[p]);
         sf_embree_intersect16(scene->embree, valid, &rays, coherence);
-        take_hits(b, scene, &rays, first);
+        (placed ? take_placed_hits : take_hits)(b, scene, &rays, first);
     }
+}
+
+void sf_trace_nearest(sf_batch *b, const sf_scene *scene, uint32_t packets, const uint32_t *active,
+                      sf_coherence coherence) {
+    if (sf_plan_has(&scene->plan, SF_STAGE_INSTANCES))
+        trace_packets(b, scene, packets, active, coherence, true);
+    else
+        trace_packets(b, scene, packets, active, coherence, false);
 }
 
 /* One packet of shadow rays, `lanes` of them. */
