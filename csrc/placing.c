@@ -112,8 +112,9 @@ static double reach_of_scene(const sf_scene *scene) {
 
 /* Embree takes rays to the prototype by the inverse in single precision. Back in the scene its rounding is
  * some 2^-23 of what was subtracted there (the ray's origin, the translation, the vertices), times the
- * condition number. Twice that, of the placement's own coordinates, is the least; the ray's are in the
- * lift of every hit (rays.h), whose 2^-18 leave room for conditions up to 8, 24 as it is measured here. */
+ * condition number. Four times that of the placement's own coordinates is the least; measured on ellipsoids
+ * squashed up to 10^4-fold, twice is too little. The ray's own coordinates are in the lift of every hit
+ * (rays.h), but for transforms that stretch much more along one axis than along another. */
 static double lift_of(const sf_scene *scene, const sf_scene_mesh *row, double reach_of_all) {
     const sf_place *place = &row->place;
     const sf_prototype *p = scene->prototypes + place->prototype;

@@ -37,10 +37,10 @@ from sunfleck.integrate import Integral, IntegralLook, integrate
 from sunfleck.load import load
 from sunfleck.mapping import MAPPINGS
 from sunfleck.material import Conductor, Dielectric, Mirror
+from sunfleck.mesh import Mesh
 from sunfleck.points import PATTERNS, SCRAMBLES, points, valid_counts
 from sunfleck.render import AOVS, PIXEL_FILTERS, RENDER_PATTERNS, STOP_REASONS, Image, Progress, Summary, merge, render
 from sunfleck.rng import RNGS, Rng
-from sunfleck.mesh import Mesh
 from sunfleck.scene import Camera, Plan, PlanDimensions, Scene, SceneInfo
 from sunfleck.shapes import Disk, Sphere
 from sunfleck.show import show

@@ -122,9 +122,7 @@ class Instances:
     transforms: NDArray[np.float32]
     albedos: NDArray[np.float32] | None
 
-    def __init__(
-        self, meshes: Mesh | Iterable[Mesh], transforms: ArrayLike, albedos: ArrayLike | None = None
-    ) -> None:
+    def __init__(self, meshes: Mesh | Iterable[Mesh], transforms: ArrayLike, albedos: ArrayLike | None = None) -> None:
         self.meshes = _meshes(meshes)
         self.transforms = _transforms(transforms)
         self.albedos = _albedos(albedos, len(self.transforms))

@@ -14,7 +14,6 @@ from sunfleck import _core
 from sunfleck._arguments import Vector, flag, integer, number, text, vector
 from sunfleck.fog import Fog
 from sunfleck.instances import Instances
-from sunfleck.material import Material
 from sunfleck.mesh import Mesh
 from sunfleck.shapes import Disk, Sphere
 from sunfleck.sky import Environment, Sun
