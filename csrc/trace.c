@@ -48,35 +48,44 @@ static void take_placed_hits(sf_batch *b, const sf_scene *scene, const struct RT
         memcpy(b->primitive + first, rays->hit.primID, sizeof rays->hit.primID);
 }
 
-static inline void trace_packets(sf_batch *b, const sf_scene *scene, uint32_t packets, const uint32_t *active,
-                                 sf_coherence coherence, const bool placed) {
-    SF_ALIGNED(struct RTCRayHit16) rays;
+/* Traces a packet whose masks and times are set. */
+static inline void trace_packet(const sf_batch *b, const sf_scene *scene, struct RTCRayHit16 *rays, uint32_t first,
+                                uint32_t active, sf_coherence coherence) {
     SF_ALIGNED(int) valid[SF_LANES];
-    memset(&rays, 0, sizeof rays);
-    memset(rays.ray.mask, 0xff, sizeof rays.ray.mask);
+    memcpy(rays->ray.org_x, b->origin[0] + first, sizeof rays->ray.org_x);
+    memcpy(rays->ray.org_y, b->origin[1] + first, sizeof rays->ray.org_y);
+    memcpy(rays->ray.org_z, b->origin[2] + first, sizeof rays->ray.org_z);
+    memcpy(rays->ray.dir_x, b->direction[0] + first, sizeof rays->ray.dir_x);
+    memcpy(rays->ray.dir_y, b->direction[1] + first, sizeof rays->ray.dir_y);
+    memcpy(rays->ray.dir_z, b->direction[2] + first, sizeof rays->ray.dir_z);
+    for (int l = 0; l < SF_LANES; ++l) rays->ray.tfar[l] = INFINITY;
+    memset(rays->hit.geomID, 0xff, sizeof rays->hit.geomID);
+    memset(rays->hit.instID, 0xff, sizeof rays->hit.instID);
+    set_valid(valid, active);
+    sf_embree_intersect16(scene->embree, valid, rays, coherence);
+}
+
+static void trace_placed(sf_batch *b, const sf_scene *scene, struct RTCRayHit16 *rays, uint32_t packets,
+                         const uint32_t *active, sf_coherence coherence) {
     for (uint32_t p = 0; p < packets; ++p) {
-        uint32_t first = p * SF_LANES;
-        memcpy(rays.ray.org_x, b->origin[0] + first, sizeof rays.ray.org_x);
-        memcpy(rays.ray.org_y, b->origin[1] + first, sizeof rays.ray.org_y);
-        memcpy(rays.ray.org_z, b->origin[2] + first, sizeof rays.ray.org_z);
-        memcpy(rays.ray.dir_x, b->direction[0] + first, sizeof rays.ray.dir_x);
-        memcpy(rays.ray.dir_y, b->direction[1] + first, sizeof rays.ray.dir_y);
-        memcpy(rays.ray.dir_z, b->direction[2] + first, sizeof rays.ray.dir_z);
-        for (int l = 0; l < SF_LANES; ++l) rays.ray.tfar[l] = INFINITY;
-        memset(rays.hit.geomID, 0xff, sizeof rays.hit.geomID);
-        memset(rays.hit.instID, 0xff, sizeof rays.hit.instID);
-        set_valid(valid, active[p]);
-        sf_embree_intersect16(scene->embree, valid, &rays, coherence);
-        (placed ? take_placed_hits : take_hits)(b, scene, &rays, first);
+        trace_packet(b, scene, rays, p * SF_LANES, active[p], coherence);
+        take_placed_hits(b, scene, rays, p * SF_LANES);
     }
 }
 
 void sf_trace_nearest(sf_batch *b, const sf_scene *scene, uint32_t packets, const uint32_t *active,
                       sf_coherence coherence) {
-    if (sf_plan_has(&scene->plan, SF_STAGE_INSTANCES))
-        trace_packets(b, scene, packets, active, coherence, true);
-    else
-        trace_packets(b, scene, packets, active, coherence, false);
+    SF_ALIGNED(struct RTCRayHit16) rays;
+    memset(&rays, 0, sizeof rays);
+    memset(rays.ray.mask, 0xff, sizeof rays.ray.mask);
+    if (sf_plan_has(&scene->plan, SF_STAGE_INSTANCES)) {
+        trace_placed(b, scene, &rays, packets, active, coherence);
+        return;
+    }
+    for (uint32_t p = 0; p < packets; ++p) {
+        trace_packet(b, scene, &rays, p * SF_LANES, active[p], coherence);
+        take_hits(b, scene, &rays, p * SF_LANES);
+    }
 }
 
 /* One packet of shadow rays, `lanes` of them. */
