@@ -69,6 +69,7 @@ bench: packages-bench .venv/.test build/reference/penumbra_256.npy build/referen
 	$(venv) bench/sampling.py
 	$(venv) bench/generators.py
 	$(venv) bench/quality.py
+	$(venv) bench/instances.py
 	$(venv) bench/which_pattern.py
 
 # Some ten minutes; results add up in build/peers/results.json, and `render_peers.py report` shows them.

@@ -67,12 +67,13 @@ static near_light light_of(const float *piece) {
     return l;
 }
 
-static bool triangle_is_near(const near_light *l, const sf_mesh *mesh, size_t triangle) {
+static bool triangle_is_near(const near_light *l, const sf_scene *scene, const sf_scene_mesh *shape, size_t triangle) {
+    const sf_mesh *mesh = &shape->mesh;
     double v[3][3];
     bool front = false;
     for (int k = 0; k < 3; ++k) {
         const float *p = mesh->vertices + 3 * (size_t)mesh->triangles[3 * triangle + (size_t)k];
-        for (int c = 0; c < 3; ++c) v[k][c] = (double)p[c];
+        sf_place_vertex(scene, shape, p, v[k]);
         front |= dot(v[k], l->normal) > l->level;
     }
     return front && box_within(l->middle, v, l->square) && triangle_square(l->middle, v) < l->square;
@@ -88,13 +89,32 @@ static bool round_is_near(const near_light *l, const sf_round *round) {
     return sqrt(square) - (double)round->radius < sqrt(l->square) && level + (double)round->radius > l->level;
 }
 
+/* Whether the box about a placed mesh is: its triangles need be asked only then. */
+static bool place_is_near(const near_light *l, const sf_scene *scene, const sf_scene_mesh *shape) {
+    const sf_prototype *prototype = scene->prototypes + shape->place.prototype;
+    double box[3][3];
+    float lower[3], upper[3];
+    for (int c = 0; c < 3; ++c) {
+        lower[c] = prototype->dark.bounds_lower[c] - prototype->offset[c];
+        upper[c] = prototype->dark.bounds_upper[c] - prototype->offset[c];
+    }
+    sf_place_box(&shape->place, lower, upper, box[0], box[1]);
+    for (int c = 0; c < 3; ++c) {
+        box[0][c] -= (double)scene->shift[c];
+        box[1][c] -= (double)scene->shift[c];
+    }
+    memcpy(box[2], box[0], sizeof box[2]);
+    return box_within(l->middle, box, l->square);
+}
+
 static bool surfaces_are_near(const sf_scene *scene, const near_light *l) {
     for (size_t m = 0; m < scene->info.mesh_count; ++m) {
         const sf_mesh *mesh = &scene->meshes[m].mesh;
         if (!sf_reflects(mesh)) continue;
         if (scene->meshes[m].round.kind && round_is_near(l, &scene->meshes[m].round)) return true;
+        if (scene->meshes[m].place.placed && !place_is_near(l, scene, scene->meshes + m)) continue;
         for (size_t t = 0; t < mesh->triangle_count; ++t)
-            if (triangle_is_near(l, mesh, t)) return true;
+            if (triangle_is_near(l, scene, scene->meshes + m, t)) return true;
     }
     return false;
 }

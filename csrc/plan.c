@@ -12,6 +12,7 @@ const char *sf_stage_name(sf_stage stage) {
         case SF_STAGE_CAMERA: return "camera";
         case SF_STAGE_LENS: return "lens";
         case SF_STAGE_INTERSECT: return "intersect";
+        case SF_STAGE_INSTANCES: return "instances";
         case SF_STAGE_ROUND: return "round shapes";
         case SF_STAGE_FOG: return "fog";
         case SF_STAGE_MISS: return "miss";
@@ -44,7 +45,7 @@ const char *sf_dimension_use_name(sf_dimension_use use) {
 
 /* What the scene holds, as far as the plan depends on it. */
 typedef struct contents {
-    bool emission, background, lens, round, sky, environment, special, fog;
+    bool emission, background, lens, instances, round, sky, environment, special, fog;
     bool spreading; /* surfaces that scatter in more directions than few: diffuse or rough */
     bool scatter;   /* surfaces that are not diffuse; */
     bool lobes;     /* of these, such as reflect and refract */
@@ -55,6 +56,7 @@ typedef struct contents {
 static contents survey(const sf_scene *scene) {
     contents has = {.lights = scene->lights.count,
                     .lens = scene->camera.aperture_radius > 0,
+                    .instances = sf_has_instances(scene),
                     .round = scene->rounds != NULL,
                     .environment = scene->environment.pixels != NULL,
                     .special = scene->lights.special,
@@ -81,6 +83,7 @@ static uint32_t choose_stages(const contents *has, uint32_t max_bounces) {
 #define NEED(condition, stage) stages |= (uint32_t)((condition) != 0) << (stage)
     NEED(!has->lens, SF_STAGE_CAMERA);
     NEED(has->lens, SF_STAGE_LENS);
+    NEED(has->instances, SF_STAGE_INSTANCES);
     NEED(has->round, SF_STAGE_ROUND);
     NEED(has->fog, SF_STAGE_FOG);
     NEED(has->background, SF_STAGE_MISS);

@@ -43,19 +43,23 @@ sf_status sf_scene_create(sf_scene **out, sf_error *error) {
     return SF_STATUS_OK;
 }
 
+void sf_scene_free_arrays(sf_scene_mesh *kept) {
+    free(kept->vertex_copy);
+    free(kept->index_copy);
+}
+
 void sf_scene_destroy(sf_scene *scene) {
     if (!scene) return;
     if (scene->embree) rtcReleaseScene(scene->embree);
+    sf_instances_free(scene);
     if (scene->device) rtcReleaseDevice(scene->device);
-    for (size_t i = 0; i < scene->info.mesh_count; ++i) {
-        free(scene->meshes[i].vertex_copy);
-        free(scene->meshes[i].index_copy);
-    }
+    for (size_t i = 0; i < scene->info.mesh_count; ++i) sf_scene_free_arrays(scene->meshes + i);
     free(scene->meshes);
     for (int c = 0; c < SF_MESH_COLUMNS; ++c) sf_aligned_free(scene->mesh_table.columns[c]);
     sf_lights_free(&scene->lights);
     sf_sky_free(&scene->sky);
     sf_aligned_free(scene->rounds);
+    sf_aligned_free(scene->turns);
     free(scene->suns);
     free(scene);
 }
@@ -144,20 +148,20 @@ static float longest_edge(const sf_mesh *mesh) {
     return longest;
 }
 
-/* Takes bounds, hash and degenerate triangles of a checked mesh into the scene's. */
-static void survey_mesh(sf_scene_info *info, const sf_mesh *mesh, size_t *degenerate) {
+/* Takes bounds, hash and counts of a checked mesh into the scene's; returns how many of its triangles have no area. */
+static size_t take_values(sf_scene_info *info, const sf_mesh *mesh) {
     for (size_t i = 0; i < 3 * mesh->vertex_count; ++i) {
         float v = mesh->vertices[i];
         if (v < info->bounds_lower[i % 3]) info->bounds_lower[i % 3] = v;
         if (v > info->bounds_upper[i % 3]) info->bounds_upper[i % 3] = v;
     }
-    *degenerate = 0;
+    size_t degenerate = 0;
     for (size_t i = 0; i < mesh->triangle_count; ++i) {
         const uint32_t *t = mesh->triangles + 3 * i;
         double n[3];
         sf_triangle_cross(mesh->vertices + 3 * (size_t)t[0], mesh->vertices + 3 * (size_t)t[1],
                           mesh->vertices + 3 * (size_t)t[2], n);
-        *degenerate += n[0] * n[0] + n[1] * n[1] + n[2] * n[2] == 0;
+        degenerate += n[0] * n[0] + n[1] * n[1] + n[2] * n[2] == 0;
     }
     info->hash = sf_scene_hash(info->hash, mesh->vertices, 12 * mesh->vertex_count);
     info->hash = sf_scene_hash(info->hash, mesh->triangles, 12 * mesh->triangle_count);
@@ -165,19 +169,44 @@ static void survey_mesh(sf_scene_info *info, const sf_mesh *mesh, size_t *degene
     info->hash = sf_scene_hash(info->hash, mesh->emission, sizeof mesh->emission);
     info->hash = sf_material_hash(info->hash, &mesh->material);
     info->triangle_count += mesh->triangle_count;
-    info->degenerate_count += *degenerate;
+    info->unique_triangle_count += mesh->triangle_count;
+    info->degenerate_count += degenerate;
+    return degenerate;
 }
 
-static sf_status attach_to_embree(sf_scene *scene, const sf_mesh *mesh, uint32_t number, sf_error *error) {
-    RTCGeometry geometry = rtcNewGeometry(scene->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+sf_status sf_scene_survey_mesh(sf_scene_info *info, const sf_mesh *mesh, size_t number, sf_error *error) {
+    sf_status status = check_mesh(mesh, number, error);
+    if (status) return status;
+    size_t degenerate = take_values(info, mesh);
+    if (!sf_emits(mesh) || degenerate < mesh->triangle_count) return SF_STATUS_OK;
+    return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                   "mesh %zu emits light but all of its %zu triangles have area 0; a light needs an area", number,
+                   mesh->triangle_count);
+}
+
+sf_status sf_scene_keep_arrays(sf_scene_mesh *kept, sf_scene_info *info, sf_error *error) {
+    sf_mesh *mesh = &kept->mesh;
+    size_t vertex_bytes = 12 * mesh->vertex_count, index_bytes = 12 * mesh->triangle_count;
+    sf_status status = SF_STATUS_OK;
+    kept->longest = longest_edge(mesh);
+    if (!kept->vertex_copy && !can_read_past(mesh->vertices, vertex_bytes))
+        status = copy_padded((const void **)&mesh->vertices, (void **)&kept->vertex_copy, vertex_bytes, info, error);
+    if (!status && !kept->index_copy && !can_read_past(mesh->triangles, index_bytes))
+        status = copy_padded((const void **)&mesh->triangles, (void **)&kept->index_copy, index_bytes, info, error);
+    return status;
+}
+
+sf_status sf_scene_attach_mesh(RTCDevice device, RTCScene embree, const sf_mesh *mesh, uint32_t number,
+                               sf_error *error) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh->vertices, 0, 12,
                                mesh->vertex_count);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh->triangles, 0, 12,
                                mesh->triangle_count);
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene->embree, geometry, number);
+    rtcAttachGeometryByID(embree, geometry, number);
     rtcReleaseGeometry(geometry);
-    int code = (int)rtcGetDeviceError(scene->device);
+    int code = (int)rtcGetDeviceError(device);
     if (code == RTC_ERROR_NONE) return SF_STATUS_OK;
     if (code == RTC_ERROR_OUT_OF_MEMORY) return sf_fail_memory(error, "a mesh in Embree", 12 * mesh->triangle_count);
     return sf_fail(error, SF_STATUS_BACKEND, "Embree refused mesh %u (its error %d)", number, code);
@@ -193,38 +222,27 @@ sf_status sf_scene_reserve_mesh(sf_scene *scene, sf_error *error) {
     return SF_STATUS_OK;
 }
 
-sf_status sf_scene_add_mesh(sf_scene *scene, const sf_mesh *mesh, sf_error *error) {
-    sf_status status = sf_scene_refuse_committed(scene, error);
+sf_status sf_scene_take_mesh(sf_scene *scene, sf_scene_mesh *kept, sf_error *error) {
     size_t number = scene->info.mesh_count;
-    if (!status) status = check_mesh(mesh, number, error);
-    if (!status) status = sf_scene_reserve_mesh(scene, error);
-    if (status) return status;
-
     sf_scene_info info = scene->info; /* kept only when all went well */
-    size_t degenerate;
-    survey_mesh(&info, mesh, &degenerate);
-    if (sf_emits(mesh) && degenerate == mesh->triangle_count)
-        return sf_fail(error, SF_STATUS_INVALID_VALUE,
-                       "mesh %zu emits light but all of its %zu triangles have area 0; a light needs an area", number,
-                       mesh->triangle_count);
-
-    sf_scene_mesh kept = {.mesh = *mesh, .longest = longest_edge(mesh)};
-    if (!can_read_past(mesh->vertices, 12 * mesh->vertex_count))
-        status = copy_padded((const void **)&kept.mesh.vertices, (void **)&kept.vertex_copy, 12 * mesh->vertex_count,
-                             &info, error);
-    if (!status && !can_read_past(mesh->triangles, 12 * mesh->triangle_count))
-        status = copy_padded((const void **)&kept.mesh.triangles, (void **)&kept.index_copy, 12 * mesh->triangle_count,
-                             &info, error);
-    if (!status) status = attach_to_embree(scene, &kept.mesh, (uint32_t)number, error);
+    sf_status status = sf_scene_survey_mesh(&info, &kept->mesh, number, error);
+    if (!status) status = sf_scene_reserve_mesh(scene, error);
+    if (!status) status = sf_scene_keep_arrays(kept, &info, error);
+    if (!status) status = sf_scene_attach_mesh(scene->device, scene->embree, &kept->mesh, (uint32_t)number, error);
     if (status) {
-        free(kept.vertex_copy);
-        free(kept.index_copy);
+        sf_scene_free_arrays(kept);
         return status;
     }
-    scene->meshes[number] = kept;
+    scene->meshes[number] = *kept;
     scene->info = info;
     scene->info.mesh_count = number + 1;
     return SF_STATUS_OK;
+}
+
+sf_status sf_scene_add_mesh(sf_scene *scene, const sf_mesh *mesh, sf_error *error) {
+    sf_scene_mesh kept = {.mesh = *mesh};
+    sf_status status = sf_scene_refuse_committed(scene, error);
+    return status ? status : sf_scene_take_mesh(scene, &kept, error);
 }
 
 sf_status sf_scene_set_camera(sf_scene *scene, const sf_camera *camera, sf_error *error) {
@@ -325,6 +343,7 @@ static sf_status build_mesh_table(sf_scene *scene, sf_error *error) {
         sf_material_tabulate(table, i, &scene->meshes[i].mesh);
         table->columns[SF_MESH_LIFT][i] = SF_LIFT_OF_EDGES * scene->meshes[i].longest;
     }
+    sf_instances_tabulate(scene, table);
     sf_fog_tabulate(scene, table);
     return SF_STATUS_OK;
 }
@@ -359,6 +378,8 @@ static void drop_tables(sf_scene *scene) {
     sf_sky_free(&scene->sky);
     sf_aligned_free(scene->rounds);
     scene->rounds = NULL;
+    sf_aligned_free(scene->turns);
+    scene->turns = NULL;
 }
 
 /* What decides the picture beside the shapes; a scene without the later ones keeps its hash. */
@@ -395,6 +416,8 @@ sf_status sf_scene_commit(sf_scene *scene, sf_error *error) {
     if (!status) status = build_rounds(scene, error);
     if (!status) status = sf_sky_build(scene, error);
     if (!status) status = sf_lights_build(scene, error);
+    scene->normal_scale = normal_scale(&scene->info);
+    if (!status) status = sf_instances_build(scene, error);
     if (status) return status;
     rtcCommitScene(scene->embree);
     int code = (int)rtcGetDeviceError(scene->device);
@@ -407,7 +430,6 @@ sf_status sf_scene_commit(sf_scene *scene, sf_error *error) {
     info->light_count = scene->lights.count;
     info->rectangle_light_count = scene->lights.rectangle_count;
     info->hash = hash_settings(scene);
-    scene->normal_scale = normal_scale(info);
     sf_plan_derive(scene, &scene->plan);
     scene->committed = true;
     return SF_STATUS_OK;
@@ -422,7 +444,9 @@ sf_status sf_scene_get_info(const sf_scene *scene, sf_scene_info *info, sf_error
     sf_status status = require_committed(scene, error);
     if (!status) {
         *info = scene->info;
-        info->mesh_count -= info->sphere_count + info->disk_count; /* which have numbers among the meshes */
+        /* Spheres, disks and what is placed have numbers among the meshes. */
+        info->mesh_count -= info->sphere_count + info->disk_count + scene->placed_count;
+        info->mesh_count += scene->prototype_mesh_count;
     }
     return status;
 }

@@ -137,6 +137,14 @@ typedef struct sf_round {
     uint32_t kind; /* sf_round_kind */
 } sf_round;
 
+/* Where a mesh of a prototype is placed: its vertex v is at linear v + translation - the scene's shift. */
+typedef struct sf_place {
+    bool placed;                /* if not, the rest is 0 */
+    uint32_t prototype, member; /* whose mesh it is; Embree's instance has the number of member 0 */
+    float linear[9];            /* by rows */
+    double translation[3];
+} sf_place;
+
 /* A mesh as the scene keeps it. */
 typedef struct sf_scene_mesh {
     sf_mesh mesh;       /* its arrays are the caller's, or the copies below */
@@ -144,7 +152,18 @@ typedef struct sf_scene_mesh {
     uint32_t *index_copy;
     sf_round round; /* where it is no mesh, but a sphere or disk: `mesh` has no arrays then */
     float longest;  /* edge of its triangles, by its largest coordinate */
+    sf_place place; /* where it is placed: `mesh` has the prototype's arrays then */
 } sf_scene_mesh;
+
+/* Meshes that are placed together. Those that emit are not in Embree's scene of them, but copied for
+ * each placement: each of their triangles is a light of its own anyway. */
+typedef struct sf_prototype {
+    RTCScene embree;
+    sf_scene_mesh *meshes; /* the dark ones first: those that do not emit */
+    uint32_t mesh_count, dark_count;
+    float offset[3];         /* what was subtracted from the vertices of the dark; see recentre.c */
+    sf_scene_info dark, lit; /* bounds, counts and hash, before that */
+} sf_prototype;
 
 struct sf_scene {
     RTCDevice device;
@@ -170,6 +189,10 @@ struct sf_scene {
     sf_fog fog;
     sf_sky sky;
     sf_round *rounds; /* by geometry number, and the row of a miss; NULL without spheres and disks */
+    sf_prototype *prototypes;
+    size_t prototype_count, prototype_capacity;
+    size_t prototype_mesh_count, placed_count; /* meshes of all prototypes; rows that are placements of them */
+    float (*turns)[9]; /* by row: brings Embree's normals to the scene and the order of 1; NULL without instances */
     sf_plan plan;
 };
 
@@ -220,6 +243,15 @@ sf_status sf_scene_check_color(const char *what, const float *color, float upper
 sf_status sf_scene_check_vector(const char *what, const float *v, sf_error *error);
 sf_status sf_scene_reserve_mesh(sf_scene *scene, sf_error *error);
 uint64_t sf_scene_hash(uint64_t hash, const void *bytes, size_t count);
+/* Checks a mesh and takes its bounds, hash and counts into the scene's. */
+sf_status sf_scene_survey_mesh(sf_scene_info *info, const sf_mesh *mesh, size_t number, sf_error *error);
+/* Copies arrays that can't be read in place. */
+sf_status sf_scene_keep_arrays(sf_scene_mesh *kept, sf_scene_info *info, sf_error *error);
+void sf_scene_free_arrays(sf_scene_mesh *kept);
+sf_status sf_scene_attach_mesh(RTCDevice device, RTCScene embree, const sf_mesh *mesh, uint32_t number,
+                               sf_error *error);
+/* Adds a mesh with the copies that it has, which are the scene's from here on. */
+sf_status sf_scene_take_mesh(sf_scene *scene, sf_scene_mesh *kept, sf_error *error);
 #define SF_LENGTH_LIMIT 1e12f   /* volumes, which Embree computes, stay finite */
 #define SF_RADIANCE_LIMIT 1e18f /* sums and products with weights stay finite */
 
@@ -230,6 +262,26 @@ void sf_fog_tabulate(const sf_scene *scene, sf_mesh_table *table);
 
 /* recentre.c: moves a scene that lies far from the origin there. */
 sf_status sf_scene_recentre(sf_scene *scene, sf_error *error);
+/* Whether things of these bounds lie far from the origin, and what to subtract from them then. */
+bool sf_choose_shift(const sf_scene_info *info, float shift[3]);
+/* Subtracts it from the vertices, of which the mesh has a copy then. */
+sf_status sf_mesh_move(sf_scene_mesh *kept, const float shift[3], sf_scene_info *info, sf_error *error);
+
+/* instances.c, placing.c */
+static inline bool sf_has_instances(const sf_scene *scene) { return scene->info.instance_count > 0; }
+void sf_instances_free(sf_scene *scene);
+/* Embree's instances of a recentred scene, and the table of their normals. */
+sf_status sf_instances_build(sf_scene *scene, sf_error *error);
+/* Fills SF_MESH_LIFT of what is placed. */
+void sf_instances_tabulate(const sf_scene *scene, sf_mesh_table *table);
+/* The determinant and the cofactors (by rows) of a transform's linear part. */
+double sf_cofactors(const float linear[9], double out[9]);
+/* The product of the Frobenius norms of the linear part and its inverse: 3 of a rotation, infinite if singular. */
+double sf_condition(const float linear[9]);
+/* Where a mesh's vertex lies in the scene. */
+void sf_place_vertex(const sf_scene *scene, const sf_scene_mesh *shape, const float *vertex, double out[3]);
+/* The box about the placed box that is given; about a rotated mesh it is larger than need be. */
+void sf_place_box(const sf_place *place, const float lower[3], const float upper[3], double low[3], double high[3]);
 
 /* A triangle whose edges have coordinates of at most `longest` is intersected with an error, along its
  * normal, of some 2^-21 of them: Embree computes the distance of its plane from a corner. Measured on

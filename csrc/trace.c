@@ -30,26 +30,61 @@ static void take_hits(sf_batch *b, const sf_scene *scene, const struct RTCRayHit
         memcpy(b->primitive + first, rays->hit.primID, sizeof rays->hit.primID);
 }
 
+/* The same where there are instances. Embree gives the instance, the number of its first mesh, and the
+ * mesh within it; its normals are the prototype's. */
+static void take_placed_hits(sf_batch *b, const sf_scene *scene, const struct RTCRayHit16 *rays, uint32_t first) {
+    uint32_t miss = scene->mesh_table.miss;
+    memcpy(b->distance + first, rays->ray.tfar, sizeof rays->ray.tfar);
+    for (int l = 0; l < SF_LANES; ++l) {
+        uint32_t instance = rays->hit.instID[0][l], mesh = rays->hit.geomID[l];
+        mesh += instance == RTC_INVALID_GEOMETRY_ID ? 0 : instance;
+        b->mesh[first + l] = mesh = mesh < miss ? mesh : miss;
+        const float *turn = scene->turns[mesh];
+        float x = rays->hit.Ng_x[l], y = rays->hit.Ng_y[l], z = rays->hit.Ng_z[l];
+        for (int c = 0; c < 3; ++c)
+            b->hit_normal[c][first + l] = turn[3 * c] * x + turn[3 * c + 1] * y + turn[3 * c + 2] * z;
+    }
+    if (sf_plan_has(&scene->plan, SF_STAGE_LIGHT_SHAPES))
+        memcpy(b->primitive + first, rays->hit.primID, sizeof rays->hit.primID);
+}
+
+/* Traces a packet whose masks and times are set. */
+static inline void trace_packet(const sf_batch *b, const sf_scene *scene, struct RTCRayHit16 *rays, uint32_t first,
+                                uint32_t active, sf_coherence coherence) {
+    SF_ALIGNED(int) valid[SF_LANES];
+    memcpy(rays->ray.org_x, b->origin[0] + first, sizeof rays->ray.org_x);
+    memcpy(rays->ray.org_y, b->origin[1] + first, sizeof rays->ray.org_y);
+    memcpy(rays->ray.org_z, b->origin[2] + first, sizeof rays->ray.org_z);
+    memcpy(rays->ray.dir_x, b->direction[0] + first, sizeof rays->ray.dir_x);
+    memcpy(rays->ray.dir_y, b->direction[1] + first, sizeof rays->ray.dir_y);
+    memcpy(rays->ray.dir_z, b->direction[2] + first, sizeof rays->ray.dir_z);
+    for (int l = 0; l < SF_LANES; ++l) rays->ray.tfar[l] = INFINITY;
+    memset(rays->hit.geomID, 0xff, sizeof rays->hit.geomID);
+    memset(rays->hit.instID, 0xff, sizeof rays->hit.instID);
+    set_valid(valid, active);
+    sf_embree_intersect16(scene->embree, valid, rays, coherence);
+}
+
+static void trace_placed(sf_batch *b, const sf_scene *scene, struct RTCRayHit16 *rays, uint32_t packets,
+                         const uint32_t *active, sf_coherence coherence) {
+    for (uint32_t p = 0; p < packets; ++p) {
+        trace_packet(b, scene, rays, p * SF_LANES, active[p], coherence);
+        take_placed_hits(b, scene, rays, p * SF_LANES);
+    }
+}
+
 void sf_trace_nearest(sf_batch *b, const sf_scene *scene, uint32_t packets, const uint32_t *active,
                       sf_coherence coherence) {
     SF_ALIGNED(struct RTCRayHit16) rays;
-    SF_ALIGNED(int) valid[SF_LANES];
     memset(&rays, 0, sizeof rays);
     memset(rays.ray.mask, 0xff, sizeof rays.ray.mask);
+    if (sf_plan_has(&scene->plan, SF_STAGE_INSTANCES)) {
+        trace_placed(b, scene, &rays, packets, active, coherence);
+        return;
+    }
     for (uint32_t p = 0; p < packets; ++p) {
-        uint32_t first = p * SF_LANES;
-        memcpy(rays.ray.org_x, b->origin[0] + first, sizeof rays.ray.org_x);
-        memcpy(rays.ray.org_y, b->origin[1] + first, sizeof rays.ray.org_y);
-        memcpy(rays.ray.org_z, b->origin[2] + first, sizeof rays.ray.org_z);
-        memcpy(rays.ray.dir_x, b->direction[0] + first, sizeof rays.ray.dir_x);
-        memcpy(rays.ray.dir_y, b->direction[1] + first, sizeof rays.ray.dir_y);
-        memcpy(rays.ray.dir_z, b->direction[2] + first, sizeof rays.ray.dir_z);
-        for (int l = 0; l < SF_LANES; ++l) rays.ray.tfar[l] = INFINITY;
-        memset(rays.hit.geomID, 0xff, sizeof rays.hit.geomID);
-        memset(rays.hit.instID, 0xff, sizeof rays.hit.instID);
-        set_valid(valid, active[p]);
-        sf_embree_intersect16(scene->embree, valid, &rays, coherence);
-        take_hits(b, scene, &rays, first);
+        trace_packet(b, scene, &rays, p * SF_LANES, active[p], coherence);
+        take_hits(b, scene, &rays, p * SF_LANES);
     }
 }
 

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
 
 namespace {
 
@@ -93,6 +95,22 @@ sf_environment make_environment(const environment_image &image, const vector3 &u
     return environment;
 }
 
+using mesh_values = std::tuple<vertex_array, triangle_array, vector3, vector3, material_values>;
+
+std::vector<sf_mesh> make_meshes(const std::vector<mesh_values> &values) {
+    std::vector<sf_mesh> meshes;
+    for (const auto &[vertices, triangles, albedo, emission, material] : values)
+        meshes.push_back(make_mesh(vertices, triangles, albedo, emission, material));
+    return meshes;
+}
+
+using transform_array = nb::ndarray<const float, nb::shape<-1, 3, 4>, nb::c_contig, nb::device::cpu>;
+using albedo_array = std::optional<rows_of_three<float>>;
+
+sf_instances make_instances(const transform_array &transforms, const albedo_array &albedos) {
+    return {transforms.data(), transforms.shape(0), albedos ? albedos->data() : nullptr};
+}
+
 nb::tuple to_tuple(const float *v) { return nb::make_tuple(v[0], v[1], v[2]); }
 
 nb::typed<nb::dict, nb::str, nb::any> info_of(const scene_handle &scene) {
@@ -103,7 +121,9 @@ nb::typed<nb::dict, nb::str, nb::any> info_of(const scene_handle &scene) {
     d["sphere_count"] = info.sphere_count;
     d["disk_count"] = info.disk_count;
     d["sun_count"] = info.sun_count;
+    d["instance_count"] = info.instance_count;
     d["triangle_count"] = info.triangle_count;
+    d["unique_triangle_count"] = info.unique_triangle_count;
     d["light_count"] = info.light_count;
     d["rectangle_light_count"] = info.rectangle_light_count;
     d["degenerate_count"] = info.degenerate_count;
@@ -183,6 +203,19 @@ void bind_scene(nb::module_ &m) {
         },
         "centre"_a, "normal"_a, "radius"_a, "albedo"_a, "emission"_a, "material"_a);
     m.def(
+        "check_instances",
+        [](const std::vector<mesh_values> &meshes, transform_array transforms, const albedo_array &albedos) {
+            scene_handle scratch;
+            std::vector<sf_mesh> made = make_meshes(meshes);
+            sf_instances instances = make_instances(transforms, albedos);
+            uint32_t prototype;
+            call([&](sf_error *error) {
+                sf_status status = sf_scene_add_prototype(scratch.scene, made.data(), made.size(), &prototype, error);
+                return status ? status : sf_instances_check(&instances, error);
+            });
+        },
+        "meshes"_a, "transforms"_a.noconvert(), "albedos"_a.noconvert().none());
+    m.def(
         "check_sun",
         [](const vector3 &direction, double angular_radius, const vector3 &irradiance) {
             scene_handle scratch;
@@ -236,6 +269,28 @@ void bind_scene(nb::module_ &m) {
                 call([&](sf_error *error) { return sf_scene_add_disk(self.scene, &disk, error); });
             },
             "centre"_a, "normal"_a, "radius"_a, "albedo"_a, "emission"_a, "material"_a)
+        .def(
+            "add_prototype",
+            [](scene_handle &self, const std::vector<mesh_values> &meshes) {
+                std::vector<sf_mesh> made = make_meshes(meshes);
+                uint32_t prototype;
+                call([&](sf_error *error) {
+                    return sf_scene_add_prototype(self.scene, made.data(), made.size(), &prototype, error);
+                });
+                for (const mesh_values &values : meshes) {
+                    self.arrays.push_back(nb::cast(std::get<0>(values)));
+                    self.arrays.push_back(nb::cast(std::get<1>(values)));
+                }
+                return prototype;
+            },
+            "meshes"_a)
+        .def(
+            "add_instances",
+            [](scene_handle &self, uint32_t prototype, transform_array transforms, const albedo_array &albedos) {
+                sf_instances instances = make_instances(transforms, albedos);
+                call([&](sf_error *error) { return sf_scene_add_instances(self.scene, prototype, &instances, error); });
+            },
+            "prototype"_a, "transforms"_a.noconvert(), "albedos"_a.noconvert().none())
         .def(
             "add_sun",
             [](scene_handle &self, const vector3 &direction, double angular_radius, const vector3 &irradiance) {

@@ -32,14 +32,16 @@ from sunfleck.estimate import (
 )
 from sunfleck.fog import Fog
 from sunfleck.gallery import gallery
+from sunfleck.instances import Instances
 from sunfleck.integrate import Integral, IntegralLook, integrate
 from sunfleck.load import load
 from sunfleck.mapping import MAPPINGS
 from sunfleck.material import Conductor, Dielectric, Mirror
+from sunfleck.mesh import Mesh
 from sunfleck.points import PATTERNS, SCRAMBLES, points, valid_counts
 from sunfleck.render import AOVS, PIXEL_FILTERS, RENDER_PATTERNS, STOP_REASONS, Image, Progress, Summary, merge, render
 from sunfleck.rng import RNGS, Rng
-from sunfleck.scene import Camera, Mesh, Plan, PlanDimensions, Scene, SceneInfo
+from sunfleck.scene import Camera, Plan, PlanDimensions, Scene, SceneInfo
 from sunfleck.shapes import Disk, Sphere
 from sunfleck.show import show
 from sunfleck.sky import Environment, Sun
@@ -84,6 +86,7 @@ __all__ = [
     "Error",
     "Fog",
     "Image",
+    "Instances",
     "Integral",
     "IntegralLook",
     "Mesh",

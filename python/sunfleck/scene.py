@@ -10,129 +10,17 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
 from sunfleck import _core
 from sunfleck._arguments import Vector, flag, integer, number, text, vector
 from sunfleck.fog import Fog
-from sunfleck.material import Material, default_albedo, material_values
+from sunfleck.instances import Instances
+from sunfleck.mesh import Mesh
 from sunfleck.shapes import Disk, Sphere
 from sunfleck.sky import Environment, Sun
 
 __all__ = ["Camera", "Mesh", "Plan", "PlanDimensions", "Scene", "SceneInfo"]
 
 _log = logging.getLogger("sunfleck")
-
-
-def _rows_of_three(name: str, value: Any, kinds: str, wanted: str) -> NDArray[Any]:
-    try:
-        array = np.asarray(value)
-    except ValueError as error:
-        raise ValueError(f"{name} is not a regular array ({error}); give shape (n, 3)") from None
-    if array.dtype.kind not in kinds:
-        raise TypeError(f"{name} has dtype {array.dtype}; give {wanted}")
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise ValueError(f"{name} has shape {array.shape}; give (n, 3)")
-    return array
-
-
-def _vertices(value: Any) -> NDArray[np.float32]:
-    array = _rows_of_three("vertices", value, "fiu", "float32, or other real numbers, which are copied")
-    with np.errstate(over="ignore"):  # becomes infinite, which C refuses by its number
-        return np.require(array, np.float32, ["C", "A"])
-
-
-def _triangles(value: Any, vertex_count: int) -> NDArray[np.uint32]:
-    array = _rows_of_three("triangles", value, "iu", "uint32, or other integers, which are copied")
-    if array.dtype != np.uint32 and array.size:
-        # Conversion would wrap what does not fit, so the range is checked while it can be.
-        wrong = (array < 0) | (array >= max(vertex_count, 1))
-        if wrong.any():
-            row = int(np.argmax(wrong.any(axis=1)))
-            raise ValueError(
-                f"triangle {row} has vertex indices {array[row].tolist()}; the mesh has {vertex_count} vertices"
-            )
-    return np.require(array, np.uint32, ["C", "A"])
-
-
-class Mesh:
-    """Triangles with one material, one reflectance and one emission.
-
-    Parameters
-    ----------
-    vertices : array_like, shape (n, 3)
-        Positions in scene units, finite. A C-contiguous float32 array is used in place, other
-        real dtypes are copied once.
-    triangles : array_like, shape (m, 3)
-        Vertex indices, each in [0, n). A C-contiguous uint32 array is used in place, other
-        integer dtypes are copied once.
-    albedo : tuple of 3 floats, optional
-        Reflectance, linear RGB, each in [0, 1]: of a diffuse surface, which it is without a
-        ``material`` (both sides reflect, with the flat normal of the triangle), or what the
-        material says. None: 0.5 grey, and 1 for a material.
-    emission : tuple of 3 floats
-        Radiance, linear RGB, each in [0, 1e18]. Only the side that (v1 - v0) x (v2 - v0)
-        points to emits.
-    material : Mirror, Dielectric or Conductor, optional
-        How the surface scatters. None: diffuse.
-
-    Raises
-    ------
-    TypeError
-        An array of strings, objects or booleans, or indices that are not integers.
-    ValueError
-        A wrong shape, a vertex that is not finite, an index out of range, a colour out of
-        range, or an emissive mesh without area.
-
-    Notes
-    -----
-    The arrays must not change while the mesh is in use: Embree reads them in place.
-    Construction takes one pass over them.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import sunfleck as sf
-    >>> vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], dtype=np.float32)
-    >>> triangles = np.array([[0, 1, 2]], dtype=np.uint32)
-    >>> mesh = sf.Mesh(vertices, triangles, albedo=(0.7, 0.7, 0.7))
-    >>> mesh.vertices is vertices
-    True
-    """
-
-    __slots__ = ("albedo", "emission", "material", "triangles", "vertices")
-
-    vertices: NDArray[np.float32]
-    triangles: NDArray[np.uint32]
-    albedo: Vector
-    emission: Vector
-    material: Material | None
-
-    def __init__(
-        self,
-        vertices: ArrayLike,
-        triangles: ArrayLike,
-        albedo: Sequence[float] | None = None,
-        emission: Sequence[float] = (0.0, 0.0, 0.0),
-        material: Material | None = None,
-    ) -> None:
-        self.vertices = _vertices(vertices)
-        self.triangles = _triangles(triangles, len(self.vertices))
-        self.material = material
-        self.albedo = default_albedo(material) if albedo is None else vector("albedo", albedo)
-        self.emission = vector("emission", emission)
-        _core.check_mesh(*self._values())
-
-    def _values(self) -> tuple[NDArray[np.float32], NDArray[np.uint32], Vector, Vector, tuple[str, float, float]]:
-        return self.vertices, self.triangles, self.albedo, self.emission, material_values(self.material)
-
-    def __repr__(self) -> str:
-        return (
-            f"Mesh({len(self.vertices)} vertices, {len(self.triangles)} triangles, "
-            f"albedo={self.albedo}, emission={self.emission}"
-            + (")" if self.material is None else f", material={self.material})")
-        )
 
 
 @dataclass(frozen=True)
@@ -274,7 +162,8 @@ class SceneInfo:
 
     ``light_count`` pieces are sampled for light (triangles, pairs of them, spheres, disks, suns, the
     environment), of which ``rectangle_light_count`` are pairs of triangles that form a parallelogram;
-    ``degenerate_count`` triangles have no area;
+    ``degenerate_count`` triangles have no area; ``triangle_count`` has those of instances as often as they
+    are placed, ``unique_triangle_count`` as often as they are held: once, but for placed lights;
     ``copied_bytes`` of the arrays could not be read in place; scenes of the same picture have
     the same ``hash``.
     """
@@ -283,7 +172,9 @@ class SceneInfo:
     sphere_count: int
     disk_count: int
     sun_count: int
+    instance_count: int
     triangle_count: int
+    unique_triangle_count: int
     light_count: int
     rectangle_light_count: int
     degenerate_count: int
@@ -293,7 +184,7 @@ class SceneInfo:
     hash: int
 
 
-Shape = Mesh | Sphere | Disk
+Shape = Mesh | Sphere | Disk | Instances
 
 
 class Scene:
@@ -301,7 +192,7 @@ class Scene:
 
     Parameters
     ----------
-    meshes : iterable of Mesh, Sphere or Disk
+    meshes : iterable of Mesh, Sphere, Disk or Instances
         At least one. Any that emits is an area light. The arrays of meshes are read in place and
         kept alive by the scene.
     camera : Camera
@@ -363,7 +254,7 @@ class Scene:
         robust: bool = False,
         fog: Fog | None = None,
     ) -> None:
-        self._shapes = _list_of("meshes", meshes, (Mesh, Sphere, Disk))
+        self._shapes = _list_of("meshes", meshes, (Mesh, Sphere, Disk, Instances))
         self._suns = _list_of("suns", suns, (Sun,))
         if not isinstance(camera, Camera):
             raise TypeError(f"camera is {camera!r}; give a sunfleck.Camera")
@@ -394,11 +285,17 @@ class Scene:
         self._report()
 
     def _add_shapes(self) -> None:
+        prototypes: dict[tuple[int, ...], int] = {}  # by the identity of their meshes
         for shape in self._shapes:
             if isinstance(shape, Mesh):
                 self._core.add_mesh(*shape._values())
             elif isinstance(shape, Sphere):
                 self._core.add_sphere(*shape._values())
+            elif isinstance(shape, Instances):
+                which = tuple(id(mesh) for mesh in shape.meshes)
+                if which not in prototypes:
+                    prototypes[which] = self._core.add_prototype(shape._prototype())
+                self._core.add_instances(prototypes[which], shape.transforms, shape.albedos)
             else:
                 self._core.add_disk(*shape._values())
         for sun in self._suns:
@@ -418,11 +315,12 @@ class Scene:
 
     @property
     def meshes(self) -> tuple[Mesh, ...]:
+        """Those that are given themselves, not by instances."""
         return tuple(shape for shape in self._shapes if isinstance(shape, Mesh))
 
     @property
     def shapes(self) -> tuple[Shape, ...]:
-        """All of them: meshes, spheres and disks."""
+        """All of them: meshes, spheres, disks and instances."""
         return self._shapes
 
     @property
@@ -485,7 +383,11 @@ class Scene:
     def __repr__(self) -> str:
         others = [
             f"{count} {name}s, "
-            for count, name in ((self._info.sphere_count, "sphere"), (self._info.disk_count, "disk"))
+            for count, name in (
+                (self._info.sphere_count, "sphere"),
+                (self._info.disk_count, "disk"),
+                (self._info.instance_count, "instance"),
+            )
             if count
         ]
         return (

@@ -140,6 +140,33 @@ sf_status sf_scene_add_mesh(sf_scene *scene, const sf_mesh *mesh, sf_error *erro
 sf_status sf_scene_add_sphere(sf_scene *scene, const sf_sphere *sphere, sf_error *error);
 sf_status sf_scene_add_disk(sf_scene *scene, const sf_disk *disk, sf_error *error);
 
+/* Keeps meshes to be placed together, as often as wanted, by sf_scene_add_instances; `prototype` becomes
+ * their number. Each is checked as by sf_scene_add_mesh, and its arrays are kept in the same way. They are
+ * no part of the picture until they are placed. */
+sf_status sf_scene_add_prototype(sf_scene *scene, const sf_mesh *meshes, size_t mesh_count, uint32_t *prototype,
+                                 sf_error *error);
+
+/* Placements of a prototype. */
+typedef struct sf_instances {
+    const float *transforms; /* count * 12: each 3 rows of 4. A point x of the prototype is at
+                                row[0] x + row[1] y + row[2] z + row[3], by rows: rotation, any scale, mirror,
+                                shear. Values finite and at most 1e12 in size; determinant of the 3 x 3 part
+                                1e-36 .. 1e36 in size; condition number at most some 10^5 */
+    size_t count;            /* 1 .. */
+    const float *albedos;    /* count * 3, each in [0, 1], of all meshes of each; NULL: as the meshes have it */
+} sf_instances;
+
+/* Whether the values are allowed, as adding them would say; one pass. */
+sf_status sf_instances_check(const sf_instances *instances, sf_error *error);
+
+/* Places the prototype's meshes. Both arrays are read here and not kept. Nothing is added where the
+ * transforms are refused, or take the prototype beyond 1e12.
+ *
+ * Meshes that do not emit are held once, in Embree too; a placement takes some 0.7 KB. Each mesh that
+ * emits is copied for each placement, since each of its triangles is a light of its own. The side that
+ * emits (and is a dielectric's outside) goes where the transform takes it: a mirror does not turn it. */
+sf_status sf_scene_add_instances(sf_scene *scene, uint32_t prototype, const sf_instances *instances, sf_error *error);
+
 /* Adds a sun; there may be 64. */
 sf_status sf_scene_add_sun(sf_scene *scene, const sf_sun *sun, sf_error *error);
 
@@ -177,17 +204,19 @@ sf_status sf_scene_commit(sf_scene *scene, sf_error *error);
 
 /* What a committed scene holds. */
 typedef struct sf_scene_info {
-    size_t mesh_count;
+    size_t mesh_count; /* those of prototypes once */
     size_t sphere_count;
     size_t disk_count;
     size_t sun_count;
-    size_t triangle_count;
+    size_t instance_count;        /* placements of prototypes */
+    size_t triangle_count;        /* that rays can meet: those of instances as often as they are placed */
+    size_t unique_triangle_count; /* that are held: those of prototypes once, but for placed lights */
     size_t light_count;           /* pieces that light is sampled from: triangles, rectangles, spheres, disks,
                                      suns, the environment */
     size_t rectangle_light_count; /* of these, pairs of triangles sampled as one parallelogram */
     size_t degenerate_count;      /* zero-area triangles */
     size_t copied_bytes;          /* of arrays that could not be read in place */
-    float bounds_lower[3];
+    float bounds_lower[3];        /* of instances, about their transformed boxes */
     float bounds_upper[3];
     uint64_t hash; /* of every value that decides the picture: equal scenes have equal hashes */
 } sf_scene_info;
@@ -218,6 +247,7 @@ typedef enum sf_stage {
     SF_STAGE_CAMERA = 0,   /* camera rays: pinhole */
     SF_STAGE_LENS,         /* camera rays: thin lens, instead of the pinhole's */
     SF_STAGE_INTERSECT,    /* nearest hits of camera rays */
+    SF_STAGE_INSTANCES,    /* which mesh of which instance was hit, and normals from there to the scene */
     SF_STAGE_ROUND,        /* points and normals of spheres and disks */
     SF_STAGE_FOG,          /* how far rays go in fog; what it leaves of sampled light */
     SF_STAGE_MISS,         /* background radiance for rays that hit nothing */
