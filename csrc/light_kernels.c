@@ -83,7 +83,7 @@ static void light(sf_batch *b, const sf_scene *scene, uint32_t count, bool weigh
     for (uint32_t first = 0; first < count; first += SF_LANES) {
         if (several) /* lanes past the end hold no place in the table: they keep what they have */
             for (uint32_t l = 0; l < SF_LANES && first + l < count; ++l)
-                give_piece(&lanes, l, lights->pieces[sf_choose_piece(lights, u[2][first + l])]);
+                give_piece(&lanes, l, lights->pieces[sf_choose_piece(lights, 0, u[2][first + l])]);
         connect_packet(b, &lanes, u, first, weigh);
     }
 }

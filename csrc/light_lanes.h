@@ -7,13 +7,15 @@
 
 #include "batch.h"
 
-/* Draws a piece from the alias table: the integer part picks a column, the rest decides. */
-static inline uint32_t sf_choose_piece(const sf_light_table *lights, float u) {
-    uint32_t last = (uint32_t)lights->count - 1;
-    float place = u * (float)lights->count;
-    uint32_t row = (uint32_t)place;
-    row = row < last ? row : last;
-    return place - (float)row < lights->pieces[row][SF_LIGHT_KEEP] ? row : lights->alias[row];
+/* Draws a piece from the alias table, which is over those from `begin` on: the integer part picks a
+ * column, the rest decides. */
+static inline uint32_t sf_choose_piece(const sf_light_table *lights, uint32_t begin, float u) {
+    uint32_t count = (uint32_t)lights->count - begin, last = count - 1;
+    float place = u * (float)count;
+    uint32_t column = (uint32_t)place;
+    column = column < last ? column : last;
+    uint32_t row = begin + column;
+    return place - (float)column < lights->pieces[row][SF_LIGHT_KEEP] ? row : lights->alias[row];
 }
 
 /* The quarter of the cell and the cell of the light: rays of a bin start close to each other and

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "light_lanes.h"
+#include "light_tree_kernels.h"
 #include "rays.h"
 #include "sunfleck/mapping.h"
 
@@ -34,6 +35,57 @@ typedef struct drawn_lanes {
 static inline void give_piece(shape_lanes *lanes, uint32_t l, const float piece[SF_LIGHT_FIELDS]) {
     for (int f = 0; f < SF_LIGHT_DRAWN; ++f) lanes->field[f][l] = piece[f];
 }
+
+/* ---- by the tree ---- */
+
+/* The vertices of a packet, those without a bit in `used` as its first. Light from behind is of no use to a
+ * surface that lets none through; fog has no surface. */
+static void view_from(sf_tree_view *SF_RESTRICT view, const sf_batch *b, const sf_scene *scene, uint32_t first,
+                      uint32_t used) {
+    bool kinds = sf_plan_has(&scene->plan, SF_STAGE_SCATTER);
+    const float *scatter = scene->mesh_table.columns[SF_MESH_SCATTER];
+    EACH_LANE {
+        uint32_t i = used >> l & 1u ? first + l : first;
+        sf_scatter kind = kinds ? (sf_scatter)(int)scatter[b->surface[i]] : SF_SCATTER_DIFFUSE;
+        view->faces[l] = kind == SF_SCATTER_DIFFUSE || kind == SF_SCATTER_ROUGH_CONDUCTOR ? 1.0f : 0.0f;
+        for (int c = 0; c < 3; ++c) {
+            view->point[c][l] = b->point[c][i];
+            view->normal[c][l] = b->normal[c][i];
+        }
+    }
+}
+
+/* The piece of the tree that was drawn with that probability. */
+static inline void take_chance(shape_lanes *lanes, uint32_t l, float chance) {
+    lanes->field[SF_LIGHT_PDF][l] *= chance;
+    for (int c = 0; c < 3; ++c) lanes->field[SF_LIGHT_WEIGHT_R + c][l] /= chance;
+}
+
+/* u is shared out first between the tree and the sky, if there is one. */
+static void choose_by_tree(shape_lanes *SF_RESTRICT lanes, const sf_batch *b, const sf_scene *scene, const float *u,
+                           uint32_t first, uint32_t count) {
+    const sf_light_table *lights = &scene->lights;
+    uint32_t sky = (uint32_t)lights->sky_first;
+    SF_ALIGNED(float) rest[SF_LANES], chance[SF_LANES];
+    SF_ALIGNED(uint32_t) piece[SF_LANES];
+    float share = lights->scene_share;
+    sf_tree_view view;
+    view_from(&view, b, scene, first, count - first < SF_LANES ? (1u << (count - first)) - 1 : 0xffffu);
+    EACH_LANE {
+        float own = u[first + l < count ? first + l : first], within = own / share;
+        rest[l] = within < 0x1.fffffep-1f ? within : 0x1.fffffep-1f;
+    }
+    SF_AT_LEVEL(sf_light_tree_kernels).draw(lights->tree, &view, rest, piece, chance);
+    EACH_LANE {
+        float own = u[first + l < count ? first + l : first];
+        bool by_tree = own < share;
+        uint32_t chosen = by_tree ? piece[l] : sf_choose_piece(lights, sky, (own - share) / (1 - share));
+        give_piece(lanes, l, lights->pieces[chosen]);
+        if (by_tree) take_chance(lanes, l, chance[l]);
+    }
+}
+
+/* ---- how each is sampled ---- */
 
 /* Chooses each lane's way: triangles and rectangles by solid angle from nearby. Sampling and
  * weighting come to the same choice, since they see the same point. */
@@ -331,10 +383,13 @@ static void connect_packet(sf_batch *SF_RESTRICT b, const shape_lanes *SF_RESTRI
 
 /* Lanes past the end hold nothing: they do as the first does. */
 static void take_packet(shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT d, const sf_batch *b,
-                        const sf_light_table *lights, float (*u)[SF_PATHS], uint32_t first, uint32_t count) {
-    if (lights->count > 1) EACH_LANE {
+                        const sf_scene *scene, float (*u)[SF_PATHS], uint32_t first, uint32_t count) {
+    const sf_light_table *lights = &scene->lights;
+    if (lights->tree)
+        choose_by_tree(lanes, b, scene, u[2], first, count);
+    else if (lights->count > 1) EACH_LANE {
             uint32_t i = first + l < count ? first + l : first;
-            give_piece(lanes, l, lights->pieces[sf_choose_piece(lights, u[2][i])]);
+            give_piece(lanes, l, lights->pieces[sf_choose_piece(lights, 0, u[2][i])]);
         }
     memcpy(d->s, u[0] + first, sizeof d->s);
     memcpy(d->t, u[1] + first, sizeof d->t);
@@ -356,7 +411,7 @@ static void connect_all(sf_batch *b, const sf_scene *scene, uint32_t count, conn
     memset(&drawn, 0, sizeof drawn);
     EACH_LANE give_piece(&lanes, l, lights->pieces[0]);
     for (uint32_t first = 0; first < count; first += SF_LANES) {
-        take_packet(&lanes, &drawn, b, lights, u, first, count);
+        take_packet(&lanes, &drawn, b, scene, u, first, count);
         choose_ways(&lanes);
         draw(&lanes, &scene->sky, &drawn);
         connect_packet(b, &lanes, &drawn, first, how);
@@ -426,6 +481,23 @@ static uint32_t list_emitters(sf_batch *b, const sf_scene *scene, uint32_t first
     return emitters;
 }
 
+/* The densities of what the rays hit, as from where they started: the vertices are what they were. */
+static void weigh_by_tree(shape_lanes *SF_RESTRICT lanes, const sf_batch *b, const sf_scene *scene, uint32_t first,
+                          uint32_t emitters) {
+    const sf_light_table *lights = &scene->lights;
+    SF_ALIGNED(float) chance[SF_LANES];
+    SF_ALIGNED(uint32_t) piece[SF_LANES];
+    sf_tree_view view;
+    view_from(&view, b, scene, first, emitters);
+    EACH_LANE {
+        uint32_t i = first + l;
+        piece[l] = 0;
+        if (emitters >> l & 1u) piece[l] = lights->of_primitive[lights->first_of_mesh[b->mesh[i]] + b->primitive[i]];
+    }
+    SF_AT_LEVEL(sf_light_tree_kernels).weigh(lights->tree, &view, piece, chance);
+    EACH_LANE lanes->field[SF_LIGHT_PDF][l] *= chance[l];
+}
+
 static void weigh_packet(sf_batch *b, const sf_scene *scene, uint32_t first, uint32_t emitters, sf_found_share share,
                          const float cosine[SF_LANES]) {
     const sf_light_table *lights = &scene->lights;
@@ -442,6 +514,7 @@ static void weigh_packet(sf_batch *b, const sf_scene *scene, uint32_t first, uin
             give_piece(&lanes, l, lights->pieces[piece]);
             for (int c = 0; c < 3; ++c) lanes.point[c][l] = b->origin[c][i];
         }
+        if (lights->tree) weigh_by_tree(&lanes, b, scene, first, emitters);
         choose_ways(&lanes);
         density_of_hits(b, &lanes, first, cosine, light_pdf);
     }

@@ -22,9 +22,11 @@ static totals sum_power(const sf_light_source *sources, size_t count) {
     return t;
 }
 
-/* Probability area x power / total, over the area: power / total. */
+/* Probability area x power / total, over the area: power / total. The tree's is 1 here, to be multiplied
+ * by what it gives. */
 static void weigh_piece(sf_scene *scene, float *piece, const sf_light_source *source, const totals *t) {
-    double pdf = t->share * source->power / t->power[source->sky];
+    bool by_tree = scene->lights.tree && !source->sky;
+    double pdf = t->share * (by_tree ? 1 / source->area : source->power / t->power[source->sky]);
     for (int c = 0; c < 3; ++c) piece[SF_LIGHT_WEIGHT_R + c] = (float)((double)source->radiance[c] / (pdf * PI));
     piece[SF_LIGHT_PDF] = (float)pdf;
     piece[SF_LIGHT_AREA] = (float)source->area;
@@ -60,12 +62,18 @@ sf_status sf_light_table_fill(sf_scene *scene, const sf_light_source *sources, s
     float *keep = malloc(count * sizeof *keep);
     sf_status status = SF_STATUS_OK;
     if (!power || !keep) status = sf_fail_memory(error, "the powers of the lights", count * sizeof *power);
+    lights->scene_share = count > lights->sky_first ? (float)t.share : 1;
     for (size_t i = 0; !status && i < count; ++i) {
         weigh_piece(scene, lights->pieces[i], sources + i, &t);
         power[i] = sources[i].area * (sources[i].power / t.power[sources[i].sky]);
     }
-    if (!status) status = sf_alias_build(power, count, keep, lights->alias, error);
-    for (size_t i = 0; !status && i < count; ++i) lights->pieces[i][SF_LIGHT_KEEP] = keep[i];
+    size_t first = lights->tree ? lights->sky_first : 0; /* the table's pieces */
+    if (!status && first < count)
+        status = sf_alias_build(power + first, count - first, keep + first, lights->alias + first, error);
+    for (size_t i = first; !status && i < count; ++i) {
+        lights->pieces[i][SF_LIGHT_KEEP] = keep[i];
+        lights->alias[i] += (uint32_t)first;
+    }
     if (!status) weigh_sky(scene, sources);
     free(power);
     free(keep);

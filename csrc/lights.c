@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "light_tree.h"
 #include "platform.h"
 #include "scene_data.h"
 #include "sunfleck/mapping.h"
@@ -134,6 +135,7 @@ void sf_lights_free(sf_light_table *lights) {
     sf_aligned_free(lights->alias);
     free(lights->of_primitive);
     free(lights->first_of_mesh);
+    sf_light_tree_destroy(lights->tree);
     memset(lights, 0, sizeof *lights);
 }
 
@@ -298,10 +300,11 @@ static sf_status build_table(sf_scene *scene, candidate *candidates, size_t coun
     if (!sources) return sf_fail_memory(error, "the list of lights", lights->count * sizeof *sources);
     sf_status status = allocate_lights(lights, lights->count, error);
     if (!status) write_pieces(scene, candidates, count, sources);
+    if (!status) status = sf_lights_grow_tree(scene, sources, error);
     if (!status) status = sf_light_table_fill(scene, sources, error);
     free(sources);
     lights->special =
-        !status && (lights->count > flat || sf_scene_scatters(scene) || sf_foggy(scene) || sf_lights_near(scene));
+        !status && (lights->tree || lights->count > flat || sf_scene_scatters(scene) || sf_foggy(scene) || sf_lights_near(scene));
     if (lights->special) status = map_primitives(scene, candidates, count, error);
     return status;
 }

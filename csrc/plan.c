@@ -21,6 +21,7 @@ const char *sf_stage_name(sf_stage stage) {
         case SF_STAGE_CHOOSE_LIGHT: return "choose light";
         case SF_STAGE_LIGHT: return "light";
         case SF_STAGE_LIGHT_SHAPES: return "light shapes";
+        case SF_STAGE_LIGHT_TREE: return "light tree";
         case SF_STAGE_SCATTER: return "scatter";
         case SF_STAGE_SURFACE: return "surface";
         case SF_STAGE_LAST_SURFACE: return "last surface";
@@ -45,7 +46,7 @@ const char *sf_dimension_use_name(sf_dimension_use use) {
 
 /* What the scene holds, as far as the plan depends on it. */
 typedef struct contents {
-    bool emission, background, lens, instances, round, sky, environment, special, fog;
+    bool emission, background, lens, instances, round, sky, environment, special, tree, fog;
     bool spreading; /* surfaces that scatter in more directions than few: diffuse or rough */
     bool scatter;   /* surfaces that are not diffuse; */
     bool lobes;     /* of these, such as reflect and refract */
@@ -60,6 +61,7 @@ static contents survey(const sf_scene *scene) {
                     .round = scene->rounds != NULL,
                     .environment = scene->environment.pixels != NULL,
                     .special = scene->lights.special,
+                    .tree = scene->lights.tree != NULL,
                     .fog = sf_foggy(scene),
                     .sampling = scene->light_sampling};
     for (size_t i = 0; i < scene->info.mesh_count; ++i) {
@@ -102,6 +104,7 @@ static uint32_t choose_stages(const contents *has, uint32_t max_bounces) {
     NEED(bounces && sampled, SF_STAGE_LIGHT);
     NEED(bounces && sampled && has->lights > 1, SF_STAGE_CHOOSE_LIGHT);
     NEED(bounces && sampled && has->special, SF_STAGE_LIGHT_SHAPES);
+    NEED(bounces && sampled && has->tree, SF_STAGE_LIGHT_TREE);
     NEED(bounces && has->scatter, SF_STAGE_SCATTER);
     NEED(surface, SF_STAGE_SURFACE);
     NEED(last, SF_STAGE_LAST_SURFACE);

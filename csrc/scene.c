@@ -389,6 +389,7 @@ static uint64_t hash_settings(const sf_scene *scene) {
     hash = sf_scene_hash(hash, scene->background, sizeof scene->background);
     hash = sf_hash64(hash, scene->max_bounces);
     if (scene->light_sampling) hash = sf_hash64(hash, (uint64_t)scene->light_sampling);
+    if (scene->light_choice) hash = sf_hash64(hash, UINT64_C(0x63686f696365) + scene->light_choice); /* as above */
     if (scene->solid_angle_ratio != 1) hash = sf_scene_hash(hash, &scene->solid_angle_ratio, sizeof(float));
     if (scene->info.sun_count) hash = sf_scene_hash(hash, scene->suns, scene->info.sun_count * sizeof *scene->suns);
     if (scene->robust) hash = sf_hash64(hash, UINT64_C(0x726f62757374)); /* no way of light_sampling */

@@ -105,6 +105,11 @@ typedef struct sf_light_table {
     float (*pieces)[SF_LIGHT_FIELDS];
     uint32_t *alias; /* alias table: the other piece of each column */
     bool special;    /* some are sampled otherwise than by area of triangles and parallelograms */
+    /* Over the pieces that are not of the sky, or NULL; see light_choice.c. Then SF_LIGHT_PDF of those is
+     * without the probability that the tree gives, and the alias table is over those of the sky alone. */
+    struct sf_light_tree *tree;
+    size_t sky_first;  /* pieces from here on are of the sky */
+    float scene_share; /* of the samples, which the others have */
     /* With SF_STAGE_LIGHT_SHAPES, the piece of a hit: of_primitive[first_of_mesh[mesh] + primitive],
      * for meshes that emit. */
     uint32_t *of_primitive;
@@ -183,6 +188,7 @@ struct sf_scene {
     sf_mesh_table mesh_table;
     sf_light_table lights;
     sf_light_sampling light_sampling;
+    sf_light_choice light_choice;
     float solid_angle_ratio;
     sf_sun *suns;
     sf_environment environment;
@@ -213,6 +219,9 @@ typedef struct sf_light_source {
 /* Gives each piece its probability and weight. Where there are lights in the scene and in the sky,
  * each kind has half of the samples. */
 sf_status sf_light_table_fill(sf_scene *scene, const sf_light_source *sources, sf_error *error);
+
+/* light_choice.c: builds the tree where the scene's choice calls for one. */
+sf_status sf_lights_grow_tree(sf_scene *scene, const sf_light_source *sources, sf_error *error);
 
 /* light_near.c: whether a surface that reflects lies so near to a light that it is sampled by solid
  * angle: in front of one of the 16 largest of those that can be. */

@@ -208,6 +208,11 @@ class Scene:
         How light that can be sampled (all but the background) is found: "both", by light and by surface
         sampling, weighted; "light" or "surface", by one of them alone. The mean is the same, but that
         "surface" misses suns of angle 0.
+    light_choice : str
+        How one light of several is chosen for a vertex: "power", in proportion to what each sends out, in
+        constant time; "tree", by a bound of what each may send there, from a tree over all triangles that
+        emit (Conty Estevez & Kulla 2018), in time that grows as the logarithm of their number; "auto", by
+        the tree where it pays, from 32 of them on. The mean is the same.
     solid_angle_ratio : float
         Triangle and rectangle lights are sampled by solid angle from points nearer to their middle than
         this many of their diagonals, and by area from all others. At least 0, which is never.
@@ -250,6 +255,7 @@ class Scene:
         suns: Iterable[Sun] = (),
         environment: Environment | None = None,
         light_sampling: str = "both",
+        light_choice: str = "auto",
         solid_angle_ratio: float = 1.0,
         robust: bool = False,
         fog: Fog | None = None,
@@ -267,6 +273,7 @@ class Scene:
         self._background = vector("background", background)
         self._max_bounces = integer("max_bounces", max_bounces, bits=32)
         self._light_sampling = text("light_sampling", light_sampling)
+        self._light_choice = text("light_choice", light_choice)
         self._solid_angle_ratio = number("solid_angle_ratio", solid_angle_ratio)
         self._robust = flag("robust", robust)
         self._core = _core.Scene()
@@ -275,6 +282,7 @@ class Scene:
         self._core.set_background(self._background)
         self._core.set_max_bounces(self._max_bounces)
         self._core.set_light_sampling(self._light_sampling)
+        self._core.set_light_choice(self._light_choice)
         self._core.set_solid_angle_ratio(self._solid_angle_ratio)
         self._core.set_robust(self._robust)
         self._fog = fog
@@ -334,6 +342,10 @@ class Scene:
     @property
     def light_sampling(self) -> str:
         return self._light_sampling
+
+    @property
+    def light_choice(self) -> str:
+        return self._light_choice
 
     @property
     def solid_angle_ratio(self) -> float:

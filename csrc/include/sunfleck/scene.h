@@ -109,6 +109,18 @@ typedef enum sf_light_sampling {
 } sf_light_sampling;
 const char *sf_light_sampling_name(sf_light_sampling sampling); /* "both", …; NULL beyond the last */
 
+/* How one light of several is chosen for a vertex. All have the same mean. Meshes count by their
+ * triangles, but that two which form a parallelogram are one piece; suns and the environment have half
+ * of the samples where there are other lights, whatever the choice among those. */
+typedef enum sf_light_choice {
+    SF_LIGHT_CHOICE_AUTO = 0, /* the tree where it pays: from 32 pieces on; the default */
+    SF_LIGHT_CHOICE_POWER,    /* in proportion to what each sends out; in constant time */
+    SF_LIGHT_CHOICE_TREE      /* by a bound of what each may send to the vertex, from a tree over them; time grows
+                                 as their logarithm. With fewer than 2 pieces there is nothing to choose, and no tree.
+                                 Conty Estevez & Kulla 2018 */
+} sf_light_choice;
+const char *sf_light_choice_name(sf_light_choice choice); /* "auto", "power", "tree"; NULL beyond the last */
+
 /* A pinhole camera, or a thin lens where aperture_radius > 0. Row 0 of the image is the top,
  * image right is forward x up. */
 typedef struct sf_camera {
@@ -174,6 +186,9 @@ sf_status sf_scene_add_sun(sf_scene *scene, const sf_sun *sun, sf_error *error);
 sf_status sf_scene_set_environment(sf_scene *scene, const sf_environment *environment, sf_error *error);
 
 sf_status sf_scene_set_light_sampling(sf_scene *scene, sf_light_sampling sampling, sf_error *error);
+
+/* A tree takes 100 bytes a piece, and when the scene is committed O(pieces log pieces) time. */
+sf_status sf_scene_set_light_choice(sf_scene *scene, sf_light_choice choice, sf_error *error);
 
 /* NULL takes it away; so does a fog of 0. A scene that has both fog and a background, suns or an
  * environment is refused when it is committed: nothing of them would come through. */
@@ -257,6 +272,7 @@ typedef enum sf_stage {
     SF_STAGE_LIGHT,        /* shadow rays to points on lights */
     SF_STAGE_LIGHT_SHAPES, /* light sampled otherwise than by area of triangles and parallelograms: by solid
                               angle, from spheres, disks, suns, the environment */
+    SF_STAGE_LIGHT_TREE,   /* the light chosen by a tree over them; see sf_light_choice */
     SF_STAGE_SCATTER,      /* mirrors, dielectrics, conductors: from them surface-sampled rays start at the
                               last bounce too */
     SF_STAGE_SURFACE,      /* surface-sampled rays between vertices */
