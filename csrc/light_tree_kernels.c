@@ -17,62 +17,71 @@ static inline float within_one(float x) {
 }
 static inline float sine_of(float cosine) { return sqrtf((1 - cosine) * (1 + cosine)); }
 
-/* The most that the node may send to a point, up to a factor that all have: its power over the square
- * of the distance, times the largest cosine at the light and, with `faces`, at the vertex. The square
- * is at least that of the sphere's radius, since within it the distance says nothing. Angles are
+/* Fields of a node for each lane. */
+typedef struct node_lanes {
+    SF_ALIGNED(float) field[SF_TREE_FIELDS][SF_LANES];
+} node_lanes;
+
+/* The most that a node may send to a vertex, up to a factor that all have: its power over the square of
+ * the distance, times the largest cosine at the light and, with `faces`, at the vertex. The square is
+ * at least that of the sphere's radius, since within it the distance says nothing. Angles are
  * subtracted by their sines and cosines, and not beyond 0. */
-static inline float importance_of(const float *node, const float point[3], const float normal[3], float faces) {
-    float to[3], square = 0, along = 0, across = 0, radius = node[SF_TREE_RADIUS];
-    for (int c = 0; c < 3; ++c) {
-        to[c] = node[SF_TREE_MIDDLE_X + c] - point[c];
-        square += to[c] * to[c];
-        along -= to[c] * node[SF_TREE_AXIS_X + c];
-        across += to[c] * normal[c];
+static void bound_packet(const node_lanes *SF_RESTRICT node, const sf_tree_view *SF_RESTRICT view,
+                         float *SF_RESTRICT out) {
+    EACH_LANE {
+        float square = 0, along = 0, across = 0, radius = node->field[SF_TREE_RADIUS][l];
+        for (int c = 0; c < 3; ++c) {
+            float to = node->field[SF_TREE_MIDDLE_X + c][l] - view->point[c][l];
+            square += to * to;
+            along -= to * node->field[SF_TREE_AXIS_X + c][l];
+            across += to * view->normal[c][l];
+        }
+        float inside = radius * radius, inverse = square > 0 ? 1 / sqrtf(square) : 0.0f;
+        /* What the sphere fills: the sine of its angle. */
+        float sine_b = radius * inverse;
+        sine_b = sine_b < 1 ? sine_b : 1.0f;
+        float cosine_b = sine_of(sine_b);
+        /* Between the axis and the way to the point, less the cone's angle, less the sphere's. */
+        float cosine_w = within_one(along * inverse), sine_w = sine_of(cosine_w);
+        float cosine_o = node->field[SF_TREE_COSINE][l], sine_o = node->field[SF_TREE_SINE][l];
+        float cosine_d = cosine_w * cosine_o + sine_w * sine_o, sine_d = sine_w * cosine_o - cosine_w * sine_o;
+        float cosine_x = cosine_w < cosine_o ? cosine_d : 1.0f, sine_x = cosine_w < cosine_o ? sine_d : 0.0f;
+        float at_light = cosine_x * cosine_b + sine_x * sine_b;
+        at_light = (cosine_x < cosine_b ? at_light : 1.0f) + SLACK;
+        /* Between the normal and the way to the node, less the sphere's. */
+        float cosine_i = within_one(across * inverse), sine_i = sine_of(cosine_i);
+        float at_vertex = cosine_i * cosine_b + sine_i * sine_b;
+        at_vertex = (cosine_i < cosine_b ? at_vertex : 1.0f) + SLACK;
+        at_vertex = view->faces[l] > 0 ? at_vertex : 1.0f;
+        at_light = at_light > 0 ? at_light : 0.0f;
+        at_vertex = at_vertex > 0 ? at_vertex : 0.0f;
+        float product = square > inside ? at_light * at_vertex : 1.0f, larger = square > inside ? square : inside;
+        float bound = node->field[SF_TREE_POWER][l] / larger * product;
+        out[l] = bound < 1e37f ? bound : 1e37f;
     }
-    float inside = radius * radius, inverse = square > 0 ? 1 / sqrtf(square) : 0.0f;
-    /* What the sphere fills: all directions from within it. */
-    float sine_b = radius * inverse, outside = square > inside ? 1.0f : 0.0f;
-    sine_b = sine_b < 1 ? sine_b : 1.0f;
-    float cosine_b = sine_of(sine_b);
-    /* Between the axis and the way to the point, less the cone's angle, less the sphere's. */
-    float cosine_w = within_one(along * inverse), sine_w = sine_of(cosine_w);
-    float cosine_o = node[SF_TREE_COSINE], sine_o = node[SF_TREE_SINE];
-    bool beyond = cosine_w < cosine_o;
-    float cosine_x = beyond ? cosine_w * cosine_o + sine_w * sine_o : 1.0f;
-    float sine_x = beyond ? sine_w * cosine_o - cosine_w * sine_o : 0.0f;
-    float at_light = cosine_x < cosine_b ? cosine_x * cosine_b + sine_x * sine_b : 1.0f;
-    /* Between the normal and the way to the node, less the sphere's. */
-    float cosine_i = within_one(across * inverse), sine_i = sine_of(cosine_i);
-    float at_vertex = cosine_i < cosine_b ? cosine_i * cosine_b + sine_i * sine_b : 1.0f;
-    at_light = outside > 0 ? at_light + SLACK : 1.0f;
-    at_vertex = outside > 0 && faces > 0 ? at_vertex + SLACK : 1.0f;
-    float larger = square > inside ? square : inside;
-    bool sees = (at_light > 0) & (at_vertex > 0);
-    return sees ? node[SF_TREE_POWER] / larger * (at_light * at_vertex) : 0.0f;
 }
 
 /* The least probability of a child that may send something: a float u in [0, 1) still comes upon it. */
 #define LEAST_SHARE 0x1p-20f
 
-/* The probability of the first of two children; an even choice where neither sends anything. */
-static inline float first_share(const float (*children)[SF_TREE_FIELDS], const float point[3], const float normal[3],
-                                float faces) {
-    float a = importance_of(children[0], point, normal, faces), b = importance_of(children[1], point, normal, faces);
-    a = a < 1e37f ? a : 1e37f;
-    b = b < 1e37f ? b : 1e37f;
-    float share = a + b > 0 ? a / (a + b) : 0.5f;
-    float low = a > 0 ? LEAST_SHARE : 0.0f, high = b > 0 ? 1 - LEAST_SHARE : 1.0f;
-    share = share > low ? share : low;
-    return share < high ? share : high;
-}
-
-/* The same for each lane's children; `first` is the number of the first. */
+/* The probability of the first of each lane's two children, which are nodes first[l] and first[l] + 1; an
+ * even choice where neither sends anything. */
 static void share_packet(const sf_light_tree *tree, const sf_tree_view *SF_RESTRICT view,
                          const uint32_t *SF_RESTRICT first, float *SF_RESTRICT share) {
+    node_lanes one, two;
+    SF_ALIGNED(float) bound_one[SF_LANES], bound_two[SF_LANES];
     EACH_LANE {
-        const float point[3] = {view->point[0][l], view->point[1][l], view->point[2][l]};
-        const float normal[3] = {view->normal[0][l], view->normal[1][l], view->normal[2][l]};
-        share[l] = first_share((const float (*)[SF_TREE_FIELDS])tree->nodes + first[l], point, normal, view->faces[l]);
+        const float *node = tree->nodes[first[l]];
+        for (int f = 0; f < SF_TREE_FIELDS; ++f) one.field[f][l] = node[f];
+        for (int f = 0; f < SF_TREE_FIELDS; ++f) two.field[f][l] = node[SF_TREE_FIELDS + f];
+    }
+    bound_packet(&one, view, bound_one);
+    bound_packet(&two, view, bound_two);
+    EACH_LANE {
+        float a = bound_one[l], b = bound_two[l], part = a + b > 0 ? a / (a + b) : 0.5f;
+        float low = a > 0 ? LEAST_SHARE : 0.0f, high = b > 0 ? 1 - LEAST_SHARE : 1.0f;
+        part = part > low ? part : low;
+        share[l] = part < high ? part : high;
     }
 }
 
