@@ -12,7 +12,7 @@
 
 /* From so many pieces on the tree has the lower error per second; see docs/scene.md, which has the
  * figures, and bench/many_lights.py, which measures them. */
-#define LEAST_PIECES 32
+#define LEAST_PIECES 8
 #define MOST_PIECES ((size_t)1 << 31)
 
 const char *sf_light_choice_name(sf_light_choice choice) {

@@ -212,7 +212,7 @@ class Scene:
         How one light of several is chosen for a vertex: "power", in proportion to what each sends out, in
         constant time; "tree", by a bound of what each may send there, from a tree over all triangles that
         emit (Conty Estevez & Kulla 2018), in time that grows as the logarithm of their number; "auto", by
-        the tree where it pays, from 32 of them on. The mean is the same.
+        the tree where it pays, from 8 of them on. The mean is the same.
     solid_angle_ratio : float
         Triangle and rectangle lights are sampled by solid angle from points nearer to their middle than
         this many of their diagonals, and by area from all others. At least 0, which is never.

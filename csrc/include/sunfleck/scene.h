@@ -113,7 +113,7 @@ const char *sf_light_sampling_name(sf_light_sampling sampling); /* "both", …; 
  * triangles, but that two which form a parallelogram are one piece; suns and the environment have half
  * of the samples where there are other lights, whatever the choice among those. */
 typedef enum sf_light_choice {
-    SF_LIGHT_CHOICE_AUTO = 0, /* the tree where it pays: from 32 pieces on; the default */
+    SF_LIGHT_CHOICE_AUTO = 0, /* the tree where it pays: from 8 pieces on; the default */
     SF_LIGHT_CHOICE_POWER,    /* in proportion to what each sends out; in constant time */
     SF_LIGHT_CHOICE_TREE      /* by a bound of what each may send to the vertex, from a tree over them; time grows
                                  as their logarithm. With fewer than 2 pieces there is nothing to choose, and no tree.
