@@ -99,11 +99,12 @@ def test_the_mean_is_that_of_power_and_of_surface_rays(kind: str) -> None:
 
 def test_a_choice_by_the_tree_has_the_lower_error_among_spread_lights() -> None:
     errors = [
-        mean_of(sf.Scene([FLOOR, *scattered(2000)], ROOM, max_bounces=1, light_choice=choice))[1]
+        mean_of(sf.Scene([FLOOR, *scattered(2000)], SPOT, max_bounces=1, light_choice=choice))[1]
         for choice in ("power", "tree")
     ]
-    # Half of the lights face away from any point, and most are some 10 times as far as the nearest.
-    assert errors[1] < 0.7 * errors[0]
+    # Half of the lights face away from any point, and the tree draws few of these: that alone halves the
+    # variance. Near ones vary more. 0.8 is half way from the root of a half to 1, at errors known to some %.
+    assert errors[1] < 0.8 * errors[0]
 
 
 @pytest.mark.parametrize("choice", ["auto", "power", "tree"])
@@ -121,7 +122,7 @@ def test_power_and_auto_are_the_same_bits_where_there_are_few() -> None:
         sf.render(sf.Scene([FLOOR, *scattered(6)], ROOM, light_choice=choice), 16, 16, spp=16, seed=3).color
         for choice in ("auto", "power")
     ]
-    assert np.array_equal(*films)
+    assert np.array_equal(films[0], films[1])
 
 
 def test_the_tree_is_the_same_bits_on_any_number_of_threads() -> None:
@@ -132,7 +133,7 @@ def test_the_tree_is_the_same_bits_on_any_number_of_threads() -> None:
 
 
 def test_lights_without_extent_beside_huge_ones() -> None:
-    specks = np.tile(np.float32([[0.5, 0.5, 1], [0.501, 0.5, 1], [0.5, 0.501, 1]]), (100, 1))
+    specks = np.tile(np.array([[0.5, 0.5, 1], [0.501, 0.5, 1], [0.5, 0.501, 1]], np.float32), (100, 1))
     flat = np.zeros((30, 3), np.float32)
     vertices = np.concatenate([specks, flat])
     tiny = sf.Mesh(vertices, np.arange(330).reshape(-1, 3), BLACK, (1000, 1000, 1000))
