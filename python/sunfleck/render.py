@@ -9,7 +9,7 @@ import logging
 import math
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -101,7 +101,7 @@ class Summary:
     seconds: float
     threads: int
     rounds: int
-    work: dict[str, float]
+    work: dict[str, float] = field(default_factory=dict)
     relative: bool = False
 
     @property

@@ -565,3 +565,20 @@ def test_a_bad_option_is_named(penumbra: sf.Scene, options: dict[str, Any], erro
 def test_a_bad_tolerance_is_named(values: dict[str, Any]) -> None:
     with pytest.raises((ValueError, TypeError), match="tolerance"):
         sf.Tolerance(**values)
+
+
+def test_a_profile_accounts_for_the_threads_time_and_changes_no_pixel() -> None:
+    scene = sf.scenes.cornell()
+    plain, told = (sf.render(scene, 64, 64, spp=32, threads=2, profile=profile) for profile in (False, True))
+    assert np.array_equal(plain.color, told.color)
+    assert plain.summary().work == {}
+    assert "work" not in str(plain.summary())
+    summary = told.summary()
+    assert set(summary.work) == {
+        "coordinates", "camera", "camera rays", "shadow rays", "surface rays", "vertices", "light", "surface", "sums", "film",
+    }  # fmt: skip
+    whole = summary.threads * summary.seconds
+    # Each thread's clock runs from tile to tile: it can't have more than the call, and has most of it.
+    assert 0.3 * whole < sum(summary.work.values()) <= 1.001 * whole
+    assert "shadow rays" in str(summary)
+    assert "surface rays" not in sf.render(sf.scenes.penumbra(), 16, 16, spp=4, profile=True).summary().work
