@@ -187,8 +187,8 @@ def test_glass_lets_light_through(tmp_path: Path, ior: float | None) -> None:
     """A pane of colour c in a white surrounding: F + (1 - F) c^2, of what is reflected by Fresnel's
     equations at its front, untinted, and what crosses two borders after any number of reflections inside.
 
-    A path brings 1 with probability F, else c^2: its deviation is sqrt(F (1 - F)) (1 - c^2), which is < 0.3, and
-    of 65,536 paths' mean 0.0012; the tolerance is 5 of it. Diffuse panes would bring c < 1, opaque ones F.
+    A path brings 1 with probability F, else c^2: its deviation is sqrt(F (1 - F)) (1 - c^2), at most 0.315 (F = 1/9,
+    c = 0), and of 65,536 paths' mean 0.00123; the tolerance is 5 of it. Diffuse panes would bring c < 1, opaque ones F.
     """
     extensions: dict[str, Any] = {GLASS: {"transmissionFactor": 1}}
     if ior is not None:
@@ -197,4 +197,4 @@ def test_glass_lets_light_through(tmp_path: Path, ior: float | None) -> None:
     glass = {"pbrMetallicRoughness": pbr, "extensions": extensions}
     reflected = ((ior or 1.5) - 1) ** 2 / ((ior or 1.5) + 1) ** 2
     expected = [reflected + (1 - reflected) * c**2 for c in (1, 0.5, 0)]
-    assert level(tmp_path, glass, [0, -1], spp=1024) == pytest.approx(expected, abs=0.006)
+    assert level(tmp_path, glass, [0, -1], spp=1024) == pytest.approx(expected, abs=0.0062)
