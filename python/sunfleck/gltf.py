@@ -3,8 +3,8 @@
 
 """gltf: meshes and camera of a glTF 2.0 file (.gltf, .glb).
 
-Read: node transforms, triangles of all three modes, sparse and quantized positions, base colour,
-emission, perspective cameras, directional lights. Not read, and said so in the log: textures, points and lines,
+Read: node transforms, triangles of all three modes, sparse and quantized positions, materials (by
+`gltf_material`), perspective cameras, directional lights. Not read, and said so in the log: textures, points and lines,
 skins, morph targets, orthographic cameras, point and spot lights. Reference: Khronos Group 2021, "glTF 2.0
 Specification" (ISO/IEC 12113:2022).
 
@@ -29,6 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sunfleck._arguments import Vector, number, vector
+from sunfleck.gltf_material import READ_EXTENSIONS, read_material
 from sunfleck.scene import Mesh
 from sunfleck.sky import Sun
 
@@ -36,11 +37,10 @@ __all__ = ["Contents", "View", "read_gltf"]
 
 _log = logging.getLogger("sunfleck")
 
-_SUPPORTED = {"KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_mesh_quantization"}
+_SUPPORTED = {"KHR_lights_punctual", "KHR_mesh_quantization"} | READ_EXTENSIONS
 _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 _LINES_AND_POINTS, _TRIANGLES, _STRIP, _FAN = (0, 1, 2, 3), 4, 5, 6
-_TEXTURED = 0.5  # what a texture that is not read is taken to be on average
 
 
 @dataclass(frozen=True)
@@ -220,22 +220,10 @@ class _File:
         return triangles
 
     def _material(self, primitive: dict[str, Any]) -> dict[str, Any]:
-        """Albedo and emission, where the file has them."""
+        """Albedo, emission and material, where the file has them."""
         if "material" not in primitive:
             return {}
-        material = self._item("materials", primitive["material"])
-        surface = material.get("pbrMetallicRoughness", {})
-        color = vector("baseColorFactor", surface.get("baseColorFactor", (1, 1, 1, 1))[:3])
-        if "baseColorTexture" in surface:
-            self._note(f"textures are not read: each is taken as {_TEXTURED} on average")
-            color = vector("baseColorFactor", np.multiply(color, _TEXTURED))
-        glow = vector("emissiveFactor", material.get("emissiveFactor", (0, 0, 0)))
-        extension = material.get("extensions", {}).get("KHR_materials_emissive_strength", {})
-        glow = vector("emission", np.multiply(glow, number("emissiveStrength", extension.get("emissiveStrength", 1))))
-        if "emissiveTexture" in material and any(glow):
-            self._note("emissive textures are not read: their materials do not emit")
-            glow = (0.0, 0.0, 0.0)
-        return {"albedo": color, "emission": glow}
+        return read_material(self._item("materials", primitive["material"]), self._note)
 
     def _meshes(self, index: Any, transform: NDArray[np.float64]) -> Iterator[Mesh]:
         for primitive in self._item("meshes", index)["primitives"]:
