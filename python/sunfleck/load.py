@@ -185,11 +185,12 @@ def load(path: FilePath, *, environment: Environment | None = None) -> Scene:
     Surfaces of OBJ, PLY and STL are diffuse: OBJ's Kd and Ke, 0.5 grey where there is none. glTF's
     have its base colour and emission (times emissive strength), and are one thing each, since
     materials are not mixed: ``Conductor(roughness)`` where metallicFactor, by default 1, is 0.5 or
-    more; else ``Dielectric(ior, roughness)`` where transmissionFactor of KHR_materials_transmission
-    is, with KHR_materials_ior, by default 1.5; else diffuse, as materials without
-    pbrMetallicRoughness are. Glass refracts, as the border of a solid whose normals point out,
-    also where the extension means a thin pane. Textures are not read: one of colour counts as 0.5,
-    for others the factors stand alone. Alpha, coats and the like are left out.
+    more and the roughness at most 0.6; else ``Dielectric(ior, roughness)`` where transmissionFactor
+    of KHR_materials_transmission is, with KHR_materials_ior, by default 1.5; else diffuse, as are
+    rougher metal, materials without pbrMetallicRoughness, and those with a texture of it. Glass
+    refracts, as the border of a solid whose normals point out, also where the extension means a
+    thin pane. Textures are not read: one of colour counts as 0.5. Alpha, coats and the like are
+    left out.
 
     A file without a perspective camera gets one of 40 degrees that sees the whole model from the
     front, to the right and above. glTF's directional lights become suns of angle 0; point and spot

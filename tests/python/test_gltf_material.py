@@ -52,7 +52,10 @@ def surface(folder: Path, pbr: Any, required: Any = (), **material: Any) -> Mate
 @pytest.mark.parametrize(
     ("pbr", "expected"),
     [
-        ({}, sf.Conductor(1.0)),  # the specification's defaults: a rough metal
+        ({}, None),  # the specification's defaults: a metal so rough that it is nearer to diffuse
+        ({"roughnessFactor": 0.6}, sf.Conductor(0.6)),
+        ({"roughnessFactor": 0.61}, None),
+        ({"roughnessFactor": 0.3, "metallicRoughnessTexture": {"index": 0}}, None),
         ({"roughnessFactor": 0.3}, sf.Conductor(0.3)),
         ({"metallicFactor": 1, "roughnessFactor": 0}, sf.Conductor(0.0)),
         ({"metallicFactor": 0.5, "roughnessFactor": 0.25}, sf.Conductor(0.25)),
@@ -101,16 +104,17 @@ def test_a_material_without_the_object_is_white_and_diffuse(tmp_path: Path, capl
 
 
 def test_emission_goes_with_any_material(tmp_path: Path) -> None:
-    pbr = {"baseColorFactor": [0.9, 0.6, 0.3, 1]}
+    pbr = {"baseColorFactor": [0.9, 0.6, 0.3, 1], "roughnessFactor": 0.5}
     mesh = load(tmp_path, {"pbrMetallicRoughness": pbr, "emissiveFactor": [1, 0, 0.5]}).meshes[0]
-    assert (mesh.material, mesh.albedo, mesh.emission) == (sf.Conductor(1.0), (0.9, 0.6, 0.3), (1, 0, 0.5))
+    assert (mesh.material, mesh.albedo, mesh.emission) == (sf.Conductor(0.5), (0.9, 0.6, 0.3), (1, 0, 0.5))
 
 
 @pytest.mark.parametrize(
     ("material", "message"),
     [
         ({"pbrMetallicRoughness": {"metallicFactor": 0.7}}, "metallicFactor 0.5 or more are metal"),
-        ({"pbrMetallicRoughness": {"metallicRoughnessTexture": {"index": 0}}}, "metallicFactor and roughnessFactor"),
+        ({"pbrMetallicRoughness": {"metallicRoughnessTexture": {"index": 0}}}, "taken as no metal"),
+        ({"pbrMetallicRoughness": {}}, "beyond 0.6 is taken as diffuse"),
         ({"extensions": {GLASS: {"transmissionFactor": 0.7}}}, "transmissionFactor 0.5 or more are glass"),
         ({"extensions": {GLASS: {"transmissionTexture": {"index": 0}}}}, "transmissionFactor stands alone"),
         ({"extensions": {"KHR_materials_clearcoat": {}}}, "KHR_materials_clearcoat of materials is not read"),
