@@ -7,6 +7,10 @@
 
 #include "scene_data.h"
 
+/* The share of all directions that an environment's light has to come from for the last surface
+ * ray to lower its error by more than the time it takes: bench/surface_ray.py. */
+#define WIDE (1.0 / 32)
+
 const char *sf_stage_name(sf_stage stage) {
     switch (stage) {
         case SF_STAGE_CAMERA: return "camera";
@@ -46,7 +50,8 @@ const char *sf_dimension_use_name(sf_dimension_use use) {
 
 /* What the scene holds, as far as the plan depends on it. */
 typedef struct contents {
-    bool emission, background, lens, instances, round, sky, environment, special, tree, fog;
+    bool emission, background, lens, instances, round, sky, special, tree, fog;
+    bool wide;      /* an environment whose light comes from many directions */
     bool spreading; /* surfaces that scatter in more directions than few: diffuse or rough */
     bool scatter;   /* surfaces that are not diffuse; */
     bool lobes;     /* of these, such as reflect and refract */
@@ -59,7 +64,7 @@ static contents survey(const sf_scene *scene) {
                     .lens = scene->camera.aperture_radius > 0,
                     .instances = sf_has_instances(scene),
                     .round = scene->rounds != NULL,
-                    .environment = scene->environment.pixels != NULL,
+                    .wide = scene->sky.spread > WIDE,
                     .special = scene->lights.special,
                     .tree = scene->lights.tree != NULL,
                     .fog = sf_foggy(scene),
@@ -75,7 +80,7 @@ static contents survey(const sf_scene *scene) {
     has.scatter |= has.fog;
     has.spreading |= has.fog;
     for (int c = 0; c < 3; ++c) has.background |= scene->background[c] > 0;
-    has.sky = has.environment;
+    has.sky = scene->environment.pixels != NULL;
     for (size_t i = 0; i < scene->sky.sun_count; ++i) has.sky |= scene->sky.suns[i].height > 0;
     return has;
 }
@@ -92,11 +97,10 @@ static uint32_t choose_stages(const contents *has, uint32_t max_bounces) {
     NEED(has->sky, SF_STAGE_SKY);
     NEED(has->emission, SF_STAGE_EMISSION);
     /* Light arrives from lights, which are sampled, or from the background, which is not. An
-     * environment is found by both, since most of it is wide. */
+     * environment that is wide is found by both. */
     bool sampled = has->lights && has->sampling != SF_LIGHT_SAMPLING_SURFACE;
-    bool found = has->sampling == SF_LIGHT_SAMPLING_SURFACE
-                     ? has->emission || has->sky
-                     : has->environment && has->sampling == SF_LIGHT_SAMPLING_BOTH;
+    bool found = has->sampling == SF_LIGHT_SAMPLING_SURFACE ? has->emission || has->sky
+                                                            : has->wide && has->sampling == SF_LIGHT_SAMPLING_BOTH;
     bool reflection = has->spreading || has->scatter, seen = has->scatter && has->sky;
     bool bounces = max_bounces > 0 && reflection && (sampled || found || seen || has->background);
     bool surface = bounces && max_bounces > 1, last = bounces && (has->background || found);

@@ -131,8 +131,9 @@ typedef struct sf_sky {
     double *edges;                  /* cosines from the top, of its rows' edges: height + 1 */
     sf_piecewise *table;            /* draws a pixel in proportion to what comes from it */
     double total;                   /* R + G + B over all solid angles */
-    float pdf;                      /* the probability of the environment among the lights, over total */
-    float far;                      /* farther than any two points of the scene */
+    double spread; /* the share of all directions that it comes from: (integral)^2 / (4 pi x that of squares) */
+    float pdf;     /* the probability of the environment among the lights, over total */
+    float far;     /* farther than any two points of the scene */
 } sf_sky;
 
 /* What a sphere or disk is, by geometry number: middle, radius, normal, kind. */

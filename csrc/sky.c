@@ -124,6 +124,7 @@ static sf_status tabulate_environment(sf_sky *sky, sf_error *error) {
         return sf_fail_memory(error, "the environment's table", columns * rows * sizeof *weights);
     }
     for (size_t r = 0; r <= rows; ++r) sky->edges[r] = cos(PI * (double)r / (double)rows);
+    double squares = 0;
     sky->total = 0;
     for (size_t r = 0; r < rows; ++r) {
         double angle = 2 * PI * (sky->edges[r] - sky->edges[r + 1]) / (double)columns;
@@ -131,8 +132,10 @@ static sf_status tabulate_environment(sf_sky *sky, sf_error *error) {
             const float *p = e->pixels + 3 * i;
             weights[i] = ((double)p[0] + p[1] + p[2]) * angle;
             sky->total += weights[i];
+            squares += weights[i] * weights[i] / angle;
         }
     }
+    sky->spread = sky->total * sky->total / (4 * PI * squares);
     sf_status status = sf_piecewise_create_2d(weights, columns, rows, &sky->table, error);
     free(weights);
     return status;

@@ -222,6 +222,12 @@ def test_plans_show_what_a_scene_needs() -> None:
     delta = sf.Scene([FLOOR], camera, max_bounces=1, suns=[sf.Sun((0, 0, 1), 0, (1, 1, 1))]).plan()
     assert "sky" not in delta.stages
     assert delta.surface_rays == 0
+    # Of one bright pixel among 64 x 128 light sampling finds all, and the last surface ray nothing.
+    wide, narrow = (sf.Scene([FLOOR], camera, max_bounces=2, environment=e).plan() for e in (SKY, TEXEL))
+    assert "last surface" in wide.stages
+    assert "last surface" not in narrow.stages
+    assert {"surface", "weight"} <= set(narrow.stages)
+    assert (wide.surface_rays, narrow.surface_rays) == (2, 1)
     alone = sf.Scene([FLOOR, square(0.5, 3)], camera, max_bounces=2, light_sampling="surface").plan()
     assert (alone.shadow_rays, alone.surface_rays) == (0, 2)
     assert "weight" not in alone.stages

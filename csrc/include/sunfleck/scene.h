@@ -276,8 +276,9 @@ typedef enum sf_stage {
     SF_STAGE_SCATTER,      /* mirrors, dielectrics, conductors: from them surface-sampled rays start at the
                               last bounce too */
     SF_STAGE_SURFACE,      /* surface-sampled rays between vertices */
-    SF_STAGE_LAST_SURFACE, /* surface-sampled rays at the last bounce, for the background or
-                              where there is no light to sample */
+    SF_STAGE_LAST_SURFACE, /* surface-sampled rays at the last bounce, for the background,
+                              for an environment whose light comes from more than 1/32 of
+                              all directions, or where no light is sampled */
     SF_STAGE_WEIGHT,       /* multiple importance sampling between light and surface rays */
     SF_STAGE_COUNT
 } sf_stage;
