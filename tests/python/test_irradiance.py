@@ -49,7 +49,8 @@ def disk(middle: Values, radius: float) -> Irradiance:
     def irradiance(x: Values, y: Values) -> Values:
         square = (x - middle[0]) ** 2 + (y - middle[1]) ** 2
         s = square + middle[2] ** 2 + radius**2
-        return math.pi * RADIANCE / 2 * (1 - (s - 2 * radius**2) / np.sqrt(s**2 - 4 * square * radius**2))
+        value: Values = math.pi * RADIANCE / 2 * (1 - (s - 2 * radius**2) / np.sqrt(s**2 - 4 * square * radius**2))
+        return value
 
     return irradiance
 
@@ -61,7 +62,8 @@ def sphere(middle: Values, radius: float) -> Irradiance:
 
     def irradiance(x: Values, y: Values) -> Values:
         distance = np.sqrt((x - middle[0]) ** 2 + (y - middle[1]) ** 2 + middle[2] ** 2)
-        return math.pi * RADIANCE * radius**2 * middle[2] / distance**3
+        value: Values = math.pi * RADIANCE * radius**2 * middle[2] / distance**3
+        return value
 
     return irradiance
 
@@ -69,22 +71,23 @@ def sphere(middle: Values, radius: float) -> Irradiance:
 RECTANGLE = np.array([(1.7, -1, 1), (1.7, 0.5, 1), (3.2, 0.5, 1), (3.2, -1, 1)])  # faces down
 DISK, DISK_RADIUS = np.array([2.4, 0.6, 1.2]), 0.9
 BALL, BALL_RADIUS = np.array([-2.4, 0.5, 1.0]), 0.8
-LIT = {"albedo": BLACK, "emission": (RADIANCE,) * 3}
+LIGHT = (RADIANCE, RADIANCE, RADIANCE)
 LIGHTS: dict[str, tuple[sf.Mesh | sf.Sphere | sf.Disk, Irradiance]] = {
-    "rectangle": (sf.Mesh(RECTANGLE, [[0, 1, 2], [0, 2, 3]], **LIT), polygon(RECTANGLE)),
-    "disk": (sf.Disk(tuple(DISK), (0, 0, -1), DISK_RADIUS, **LIT), disk(DISK, DISK_RADIUS)),
-    "sphere": (sf.Sphere(tuple(BALL), BALL_RADIUS, **LIT), sphere(BALL, BALL_RADIUS)),
+    "rectangle": (sf.Mesh(RECTANGLE, [[0, 1, 2], [0, 2, 3]], BLACK, LIGHT), polygon(RECTANGLE)),
+    "disk": (sf.Disk((2.4, 0.6, 1.2), (0, 0, -1), DISK_RADIUS, BLACK, LIGHT), disk(DISK, DISK_RADIUS)),
+    "sphere": (sf.Sphere((-2.4, 0.5, 1), BALL_RADIUS, BLACK, LIGHT), sphere(BALL, BALL_RADIUS)),
 }
 
 
 def pixel_means(irradiance: Irradiance) -> Values:
     """Over each pixel's square of the floor, by Gauss and Legendre's rule of 4 x 4 points: exact to
-    degree 7, and a pixel is 1/25 of the least distance to a light."""
+    degree 7, and a pixel is 1/25 of the least distance to a light's edge, or the sphere's middle."""
     nodes, weights = np.polynomial.legendre.leggauss(4)
     steps = (np.arange(SIZE)[:, None] + (nodes + 1) / 2) / SIZE * 2 - 1
     x, y = np.meshgrid(HALF * steps.ravel(), -HALF * steps.ravel())  # rows from the top
     values = irradiance(x, y).reshape(SIZE, 4, SIZE, 4)
-    return np.einsum("iajb,a,b->ij", values, weights / 2, weights / 2)
+    means: Values = np.einsum("iajb,a,b->ij", values, weights / 2, weights / 2)
+    return means
 
 
 def test_the_closed_form_of_the_disk_is_that_of_a_polygon_of_many_sides() -> None:
