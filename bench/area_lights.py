@@ -104,7 +104,7 @@ def chart(rows: list[dict[float, tuple[float, float, bool]]], path: Path) -> Non
 def main() -> None:
     """Arguments: the names of the cases that shall be measured; none: all."""
     print(describe_machine())
-    print(describe_build(Path(sf._core.__file__)))
+    print(describe_build())
     print(f"{'':16}" + "".join(f"{'ratio ' + format(r, 'g'):>22}" for r in RATIOS))
     print(f"{'':16}" + f"{'relMSE   ms':>22}" + f"{'relMSE x   seconds x':>22}" * (len(RATIOS) - 1))
     cases = {f"panel at {h:g}": panel(h) for h in HEIGHTS} | {"ceiling": ceiling}

@@ -19,7 +19,6 @@ import math
 import time
 import warnings
 from collections.abc import Callable
-from pathlib import Path
 from statistics import median
 from typing import Any
 
@@ -29,7 +28,6 @@ from numpy.typing import NDArray
 from scipy.special import ndtr, ndtri
 
 import sunfleck as sf
-from sunfleck import _core
 
 Array = NDArray[np.float64]
 KEPT = ROOT / "build/which_pattern.json"
@@ -143,7 +141,7 @@ def scene_times() -> dict[str, list[float]]:
 
 def keep_times() -> None:
     KEPT.parent.mkdir(exist_ok=True)
-    about = f"{describe_machine()}; {describe_build(Path(_core.__file__))}"
+    about = f"{describe_machine()}; {describe_build()}"
     KEPT.write_text(json.dumps({"about": about, "points": points_times(), "scenes": scene_times()}, indent=1))
     print(about)
 

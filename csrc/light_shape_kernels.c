@@ -387,7 +387,8 @@ static void take_packet(shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT
     const sf_light_table *lights = &scene->lights;
     if (lights->tree)
         choose_by_tree(lanes, b, scene, u[2], first, count);
-    else if (lights->count > 1) EACH_LANE {
+    else if (lights->count > 1)
+        EACH_LANE {
             uint32_t i = first + l < count ? first + l : first;
             give_piece(lanes, l, lights->pieces[sf_choose_piece(lights, 0, u[2][i])]);
         }

@@ -85,8 +85,8 @@ static void share_packet(const sf_light_tree *tree, const sf_tree_view *SF_RESTR
     }
 }
 
-static void draw(const sf_light_tree *tree, const sf_tree_view *view, const float u[SF_LANES],
-                 uint32_t piece[SF_LANES], float chance[SF_LANES]) {
+static void draw(const sf_light_tree *tree, const sf_tree_view *view, const float u[SF_LANES], uint32_t piece[SF_LANES],
+                 float chance[SF_LANES]) {
     SF_ALIGNED(float) rest[SF_LANES], share[SF_LANES];
     SF_ALIGNED(uint32_t) first[SF_LANES], child[SF_LANES];
     EACH_LANE {

@@ -21,8 +21,8 @@ typedef struct sf_light_tree_kernels {
     /* Draws a piece for each vertex by u in [0, 1); `chance` is its probability, above 0. The
      * probabilities of all pieces sum to 1 at any vertex. A piece has probability 0 only where it sends
      * nothing to the vertex. */
-    void (*draw)(const sf_light_tree *tree, const sf_tree_view *view, const float u[SF_LANES],
-                 uint32_t piece[SF_LANES], float chance[SF_LANES]);
+    void (*draw)(const sf_light_tree *tree, const sf_tree_view *view, const float u[SF_LANES], uint32_t piece[SF_LANES],
+                 float chance[SF_LANES]);
 
     /* The probability with which `draw` draws the piece, to the bit. */
     void (*weigh)(const sf_light_tree *tree, const sf_tree_view *view, const uint32_t piece[SF_LANES],

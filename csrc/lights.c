@@ -303,8 +303,8 @@ static sf_status build_table(sf_scene *scene, candidate *candidates, size_t coun
     if (!status) status = sf_lights_grow_tree(scene, sources, error);
     if (!status) status = sf_light_table_fill(scene, sources, error);
     free(sources);
-    lights->special =
-        !status && (lights->tree || lights->count > flat || sf_scene_scatters(scene) || sf_foggy(scene) || sf_lights_near(scene));
+    lights->special = !status && (lights->tree || lights->count > flat || sf_scene_scatters(scene) || sf_foggy(scene) ||
+                                  sf_lights_near(scene));
     if (lights->special) status = map_primitives(scene, candidates, count, error);
     return status;
 }

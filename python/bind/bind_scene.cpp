@@ -325,8 +325,7 @@ void bind_scene(nb::module_ &m) {
                 int k = 0;
                 const char *known;
                 while ((known = sf_light_choice_name(static_cast<sf_light_choice>(k))) && name != known) ++k;
-                if (!known)
-                    throw nb::value_error(("light_choice is '" + name + "'; give auto, power or tree").c_str());
+                if (!known) throw nb::value_error(("light_choice is '" + name + "'; give auto, power or tree").c_str());
                 call([&](sf_error *error) {
                     return sf_scene_set_light_choice(self.scene, static_cast<sf_light_choice>(k), error);
                 });

@@ -213,8 +213,8 @@ static void test_what_shines_is_never_passed_over(void **unused) {
 /* A lamp that faces away, and one behind the vertex, are not drawn while another shines. */
 static void test_what_faces_away_is_not_drawn(void **unused) {
     (void)unused;
-    sf_tree_piece pieces[3] = {{{-1, 2, -1}, {1, 2, 1}, {0, -1, 0}, false, 1},  /* above, facing down */
-                               {{-1, 3, -1}, {1, 3, 1}, {0, 1, 0}, false, 1e6f}, /* above, facing up */
+    sf_tree_piece pieces[3] = {{{-1, 2, -1}, {1, 2, 1}, {0, -1, 0}, false, 1},      /* above, facing down */
+                               {{-1, 3, -1}, {1, 3, 1}, {0, 1, 0}, false, 1e6f},    /* above, facing up */
                                {{-1, -2, -1}, {1, -2, 1}, {0, 1, 0}, false, 1e6f}}; /* below, facing up */
     sf_light_tree *tree;
     sf_tree_view view = {.point = {{0}}};
