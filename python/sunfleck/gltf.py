@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 
 from sunfleck._arguments import Vector, number, vector
 from sunfleck.gltf_material import READ_EXTENSIONS, read_material
-from sunfleck.scene import Mesh
+from sunfleck.mesh import Mesh
 from sunfleck.sky import Sun
 
 __all__ = ["Contents", "View", "read_gltf"]

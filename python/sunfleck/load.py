@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from sunfleck._arguments import Vector, vector
 from sunfleck._files import FilePath, given_path
 from sunfleck.gltf import Contents, View, read_gltf
-from sunfleck.scene import Camera, Mesh, Scene
+from sunfleck.mesh import Mesh
+from sunfleck.scene import Camera, Scene
 from sunfleck.scenes import SCENES
 from sunfleck.sky import Environment
 

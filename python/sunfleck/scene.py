@@ -18,7 +18,7 @@ from sunfleck.mesh import Mesh
 from sunfleck.shapes import Disk, Sphere
 from sunfleck.sky import Environment, Sun
 
-__all__ = ["Camera", "Mesh", "Plan", "PlanDimensions", "Scene", "SceneInfo"]
+__all__ = ["Camera", "Plan", "PlanDimensions", "Scene", "SceneInfo"]
 
 _log = logging.getLogger("sunfleck")
 

@@ -11,7 +11,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sunfleck.scene import Camera, Mesh, Scene
+from sunfleck.mesh import Mesh
+from sunfleck.scene import Camera, Scene
 
 __all__ = ["SCENES", "cornell", "defocus", "keyhole", "penumbra"]
 
