@@ -28,15 +28,6 @@ void sf_instances_free(sf_scene *scene) {
 
 /* ---- prototypes ---- */
 
-static sf_scene_info empty_info(void) {
-    sf_scene_info info = {0};
-    for (int c = 0; c < 3; ++c) {
-        info.bounds_lower[c] = INFINITY;
-        info.bounds_upper[c] = -INFINITY;
-    }
-    return info;
-}
-
 /* Takes the meshes over, the dark ones first. */
 static sf_status take_meshes(sf_prototype *p, const sf_mesh *meshes, size_t count, sf_error *error) {
     p->meshes = calloc(count, sizeof *p->meshes);
@@ -70,12 +61,10 @@ static sf_status attach_meshes(const sf_scene *scene, sf_prototype *p, sf_error 
 }
 
 static sf_status reserve_prototype(sf_scene *scene, sf_error *error) {
-    if (scene->prototype_count < scene->prototype_capacity) return SF_STATUS_OK;
-    size_t capacity = scene->prototype_capacity ? 2 * scene->prototype_capacity : 8;
-    sf_prototype *prototypes = realloc(scene->prototypes, capacity * sizeof *prototypes);
-    if (!prototypes) return sf_fail_memory(error, "the list of prototypes", capacity * sizeof *prototypes);
+    sf_prototype *prototypes = sf_scene_grow(scene->prototypes, &scene->prototype_capacity, scene->prototype_count,
+                                             sizeof *prototypes, "the list of prototypes", error);
+    if (!prototypes) return SF_STATUS_OUT_OF_MEMORY;
     scene->prototypes = prototypes;
-    scene->prototype_capacity = capacity;
     return SF_STATUS_OK;
 }
 
@@ -86,7 +75,7 @@ sf_status sf_scene_add_prototype(sf_scene *scene, const sf_mesh *meshes, size_t 
     if (!meshes || mesh_count < 1 || mesh_count > ROW_LIMIT)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "the prototype has %zu meshes; it must have 1 to %d",
                        meshes ? mesh_count : 0, ROW_LIMIT);
-    sf_prototype p = {.dark = empty_info(), .lit = empty_info()};
+    sf_prototype p = {.dark = sf_scene_no_info(), .lit = sf_scene_no_info()};
     status = reserve_prototype(scene, error);
     if (!status) status = take_meshes(&p, meshes, mesh_count, error);
     if (!status && p.dark_count) status = attach_meshes(scene, &p, error);

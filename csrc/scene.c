@@ -21,6 +21,11 @@ sf_mesh sf_mesh_default(void) {
 
 sf_camera sf_camera_default(void) { return (sf_camera){.position = {0, 0, 1}, .up = {0, 1, 0}, .vertical_fov = 40}; }
 
+sf_scene_info sf_scene_no_info(void) {
+    return (sf_scene_info){.bounds_lower = {INFINITY, INFINITY, INFINITY},
+                           .bounds_upper = {-INFINITY, -INFINITY, -INFINITY}};
+}
+
 sf_status sf_scene_create(sf_scene **out, sf_error *error) {
     *out = NULL;
     sf_scene *scene = calloc(1, sizeof *scene);
@@ -28,10 +33,7 @@ sf_status sf_scene_create(sf_scene **out, sf_error *error) {
     scene->camera = sf_camera_default();
     scene->max_bounces = 5;
     scene->solid_angle_ratio = 1;
-    for (int c = 0; c < 3; ++c) {
-        scene->info.bounds_lower[c] = INFINITY;
-        scene->info.bounds_upper[c] = -INFINITY;
-    }
+    scene->info = sf_scene_no_info();
     scene->device = rtcNewDevice(NULL);
     if (scene->device) scene->embree = rtcNewScene(scene->device);
     if (!scene->embree) {
@@ -212,13 +214,22 @@ sf_status sf_scene_attach_mesh(RTCDevice device, RTCScene embree, const sf_mesh 
     return sf_fail(error, SF_STATUS_BACKEND, "Embree refused mesh %u (its error %d)", number, code);
 }
 
+void *sf_scene_grow(void *list, size_t *capacity, size_t count, size_t bytes, const char *what, sf_error *error) {
+    if (count < *capacity) return list;
+    size_t larger = *capacity ? 2 * *capacity : 8;
+    void *grown = realloc(list, larger * bytes);
+    if (grown)
+        *capacity = larger;
+    else
+        (void)sf_fail_memory(error, what, larger * bytes);
+    return grown;
+}
+
 sf_status sf_scene_reserve_mesh(sf_scene *scene, sf_error *error) {
-    if (scene->info.mesh_count < scene->mesh_capacity) return SF_STATUS_OK;
-    size_t capacity = scene->mesh_capacity ? 2 * scene->mesh_capacity : 8;
-    sf_scene_mesh *meshes = realloc(scene->meshes, capacity * sizeof *meshes);
-    if (!meshes) return sf_fail_memory(error, "the list of meshes", capacity * sizeof *meshes);
+    sf_scene_mesh *meshes = sf_scene_grow(scene->meshes, &scene->mesh_capacity, scene->info.mesh_count, sizeof *meshes,
+                                          "the list of meshes", error);
+    if (!meshes) return SF_STATUS_OUT_OF_MEMORY;
     scene->meshes = meshes;
-    scene->mesh_capacity = capacity;
     return SF_STATUS_OK;
 }
 

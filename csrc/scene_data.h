@@ -251,7 +251,12 @@ static inline bool sf_scene_scatters(const sf_scene *scene) {
 sf_status sf_scene_refuse_committed(const sf_scene *scene, sf_error *error);
 sf_status sf_scene_check_color(const char *what, const float *color, float upper, sf_error *error);
 sf_status sf_scene_check_vector(const char *what, const float *v, sf_error *error);
+/* The list, with room for one more than the `count` of `bytes` each that it holds; NULL, the list as it was,
+ * where there is no memory, which is SF_STATUS_OUT_OF_MEMORY. */
+void *sf_scene_grow(void *list, size_t *capacity, size_t count, size_t bytes, const char *what, sf_error *error);
 sf_status sf_scene_reserve_mesh(sf_scene *scene, sf_error *error);
+/* Counts of nothing, bounds that hold nothing. */
+sf_scene_info sf_scene_no_info(void);
 uint64_t sf_scene_hash(uint64_t hash, const void *bytes, size_t count);
 /* Checks a mesh and takes its bounds, hash and counts into the scene's. */
 sf_status sf_scene_survey_mesh(sf_scene_info *info, const sf_mesh *mesh, size_t number, sf_error *error);
