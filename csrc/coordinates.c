@@ -25,34 +25,38 @@ static void tabulate_sobol(uint32_t dimension, uint32_t table[4][256]) {
         }
 }
 
-/* Gives each group of the plan its place. Light points have the best pair, (0, 1): a block of
- * 16 then has one point in each cell of a 4 x 4 grid on the light. */
-static void assign_sources(sf_coordinates *coordinates, const sf_plan *plan) {
-    bool lens = plan->stages >> SF_STAGE_LENS & 1u;
-    for (uint32_t g = 0; g < plan->dimension_group_count; ++g) {
-        const sf_plan_dimensions *group = plan->dimensions + g;
-        sf_coordinate_source *source = coordinates->sources + g;
-        *source = (sf_coordinate_source){.first = group->first, .count = group->count, .set = group->bounce - 1};
-        switch (group->use) {
-            case SF_DIMENSION_PIXEL:
-                /* Apart from the first vertex's, where that has the same dimensions. */
-                source->set = lens || plan->surface_rays > 0 || plan->max_bounces > 1 ? plan->max_bounces : 0;
-                source->dimension = 2;
-                break;
-            case SF_DIMENSION_LENS:
-                source->set = plan->max_bounces;
-                source->dimension = 0;
-                break;
-            case SF_DIMENSION_LIGHT: source->dimension = 0; break;
-            case SF_DIMENSION_SURFACE: source->dimension = 2; break;
-            case SF_DIMENSION_CHOICE: source->dimension = 4; break;
-            case SF_DIMENSION_LOBE: source->dimension = 5; break;
-            case SF_DIMENSION_FOG:
-                if (group->bounce == 0) source->set = plan->max_bounces;
-                source->dimension = 7;
-                break;
-        }
+/* Who takes the next dimensions of a set. The light points of the first vertex have the best pair, (0, 1): a
+ * block of 16 then has one point in each cell of a 4 x 4 grid on the light. Its surface has the next
+ * best: with dimensions 4 and 5, whose cells of 1/256 may hold 8 of 256 points, cornell's error is 1.7
+ * times as large. */
+static int turn_of(const sf_plan_dimensions *group) {
+    switch (group->use) {
+        case SF_DIMENSION_LIGHT:
+        case SF_DIMENSION_SURFACE: return 0;
+        case SF_DIMENSION_LENS: return 1;
+        case SF_DIMENSION_PIXEL: return 2;
+        default: return 3;
     }
+}
+
+static uint32_t set_of(const sf_plan *plan, uint32_t bounce) {
+    if (bounce) return (bounce - 1) / SF_SET_BOUNCES;
+    return plan->max_bounces > 1 ? SF_CAMERA_SET : 0;
+}
+
+/* Gives each group of the plan its place. */
+static void assign_sources(sf_coordinates *coordinates, const sf_plan *plan) {
+    uint32_t taken[SF_CAMERA_SET + 1] = {0};
+    for (int turn = 0; turn <= 3; ++turn)
+        for (uint32_t g = 0; g < plan->dimension_group_count; ++g) {
+            const sf_plan_dimensions *group = plan->dimensions + g;
+            if (turn_of(group) != turn) continue;
+            uint32_t set = set_of(plan, group->bounce);
+            coordinates->sources[g] = (sf_coordinate_source){
+                .set = set, .dimension = taken[set], .first = group->first, .count = group->count};
+            taken[set] += group->count;
+            assert(taken[set] <= SF_SET_ROULETTE);
+        }
 }
 
 /* The path's dimensions are those of the groups, one after another, and then roulette's. */
