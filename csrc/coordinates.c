@@ -28,13 +28,14 @@ static void tabulate_sobol(uint32_t dimension, uint32_t table[4][256]) {
 /* Who takes the next dimensions of a set. The light points of the first vertex have the best pair, (0, 1): a
  * block of 16 then has one point in each cell of a 4 x 4 grid on the light. Its surface has the next
  * best: with dimensions 4 and 5, whose cells of 1/256 may hold 8 of 256 points, cornell's error is 1.7
- * times as large. */
+ * times as large. With the lens before the pixel defocus would have as little error, but the error
+ * would fall in uneven steps as samples double, which half-widths could not tell: 0.53 of its variance at 64. */
 static int turn_of(const sf_plan_dimensions *group) {
     switch (group->use) {
         case SF_DIMENSION_LIGHT:
         case SF_DIMENSION_SURFACE: return 0;
-        case SF_DIMENSION_LENS: return 1;
-        case SF_DIMENSION_PIXEL: return 2;
+        case SF_DIMENSION_PIXEL: return 1;
+        case SF_DIMENSION_LENS: return 2;
         default: return 3;
     }
 }
