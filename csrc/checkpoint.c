@@ -62,6 +62,7 @@ static const option_field option_fields[] = {
     OPTION(start, SF_ARRAY_U32, 1, EQUAL),
     OPTION(relative_tolerance, SF_ARRAY_F64, 1, TOLERANCE),
     OPTION(absolute_tolerance, SF_ARRAY_F64, 1, TOLERANCE),
+    OPTION(relmse, SF_ARRAY_F64, 1, TOLERANCE),
     OPTION(confidence, SF_ARRAY_F64, 1, EQUAL),
     OPTION(min_spp, SF_ARRAY_U32, 1, EQUAL),
     OPTION(max_spp, SF_ARRAY_U32, 1, LARGER),
@@ -116,6 +117,10 @@ static const column pixel_columns[] = {
     PIXEL("half_width", half_width, SF_ARRAY_F32, 1),
     PIXEL("reason", reason, SF_ARRAY_U8, 1),
 };
+
+/* Of the pixels under a goal of the whole picture. */
+#define GOAL(field, type) {"goal." #field, offsetof(sf_goal_note, field), type, 1}
+static const column goal_columns[] = {GOAL(error, SF_ARRAY_F32), GOAL(around, SF_ARRAY_F32), GOAL(taken, SF_ARRAY_U32)};
 
 /* Of the pixels of a filter with negative lobes. */
 #define SIGNED(name, field, type, width) {"signed." name, offsetof(sf_signed_pixel, field), type, width}
@@ -198,6 +203,9 @@ static void list_progress(array_list *list, sf_checkpoint *c) {
     if (film->aovs && film->aovs->sums_per_pixel)
         list_array(list, "aov.sums", SF_ARRAY_F64, film->aovs->sums_per_pixel, (uint64_t)film->width * film->height,
                    film->aovs->sums, film->aovs->sums_per_pixel * sizeof *film->aovs->sums);
+    if (c->notes)
+        list_columns(list, goal_columns, COUNT(goal_columns), c->notes, (uint64_t)film->width * film->height,
+                     sizeof *c->notes);
     if (film->signed_pixels)
         list_columns(list, signed_columns, COUNT(signed_columns), film->signed_pixels,
                      (uint64_t)film->width * film->height, sizeof *film->signed_pixels);
@@ -343,12 +351,11 @@ static void print_option(char text[TEXT_SIZE], const option_field *field, const 
         print_number(text, option_number(field, options));
 }
 
-static bool has_tolerance(const sf_render_options *o) { return o->relative_tolerance > 0 || o->absolute_tolerance > 0; }
-
 /* Whether our tolerance is at most theirs; before the level is known no decision has used it. */
 static bool tolerance_allows(const sf_render_options *theirs, const sf_render_options *ours,
                              const sf_round_state *state) {
-    if (has_tolerance(theirs) != has_tolerance(ours)) return false;
+    if (sf_has_tolerance(theirs) != sf_has_tolerance(ours) || (theirs->relmse > 0) != (ours->relmse > 0)) return false;
+    if (ours->relmse > theirs->relmse) return false;
     double level = state->level;
     return !state->level_fixed || fmax(ours->absolute_tolerance, ours->relative_tolerance * level) <=
                                       fmax(theirs->absolute_tolerance, theirs->relative_tolerance * level);

@@ -8,6 +8,7 @@
 #include <stdbool.h>
 
 #include "film.h"
+#include "goal.h"
 
 /* Where the rounds are. */
 typedef struct sf_round_state {
@@ -28,6 +29,7 @@ typedef struct sf_checkpoint {
     uint64_t *open;   /* by cell: pixels that are not done */
     uint64_t *active; /* of these, the lap's */
     size_t cells;
+    sf_goal_note *notes; /* by pixel; NULL without a goal of the whole picture */
     sf_round_state state;
 } sf_checkpoint;
 

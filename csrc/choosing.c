@@ -130,9 +130,9 @@ static uint32_t least_planned(const sf_rounds *r) {
 
 /* Sets the next lap: its pixels, where it begins and where it looks. False: nothing is left. */
 bool sf_rounds_begin_lap(sf_rounds *r) {
-    bool budget = !r->options.spp && !(r->options.relative_tolerance > 0 || r->options.absolute_tolerance > 0);
-    if (budget && !r->second) {
-        if (!choose_by_budget(r)) return false;
+    bool chosen = !r->options.spp && !sf_has_tolerance(&r->options);
+    if (chosen && !r->second) {
+        if (!(r->goal ? sf_goal_choose(r) : choose_by_budget(r))) return false;
     } else {
         memcpy(r->active, r->open, sf_rounds_cell_count(r) * sizeof *r->active);
         r->from = r->to;
@@ -142,7 +142,7 @@ bool sf_rounds_begin_lap(sf_rounds *r) {
     if (!r->in_lap) return false; /* after the last sample there is no look */
     if (r->second)
         r->look = least_planned(r);
-    else if (!budget)
+    else if (!chosen || r->goal)
         r->look = sf_stop_next_look(&r->options, r->from);
     r->to = r->from;
     r->lap = r->second ? (sf_lap){0, 0} : sf_stop_lap(&r->options, r->look);

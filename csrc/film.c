@@ -223,6 +223,7 @@ void sf_film_resolve_row(sf_film *film, uint32_t y) {
         row.nonfinite += pixel->moments.nonfinite;
         ++row.reasons[film->reason[i]];
         row.half_width += (double)film->half_width[i];
+        row.relmse += sf_stop_relative_error(film, pixel);
         if (!((double)film->half_width[i] > row.worst)) continue;
         row.worst = (double)film->half_width[i];
         row.worst_x = x + film->crop_x0;
@@ -241,6 +242,7 @@ void sf_film_summarize_rows(sf_film *film) {
         summary->nonfinite_samples += row->nonfinite;
         for (int reason = 0; reason < SF_STOP_REASON_COUNT; ++reason) summary->reasons[reason] += row->reasons[reason];
         summary->mean_half_width += row->half_width / (double)summary->pixels;
+        summary->relmse += row->relmse / (double)summary->pixels;
         if (!(row->worst > summary->worst_half_width)) continue;
         summary->worst_half_width = row->worst;
         summary->worst_x = row->worst_x;
@@ -322,6 +324,7 @@ static void describe_options(sf_film *film, const sf_render_options *o) {
     describe(film, "start", "%" PRIu32, o->start);
     describe(film, "relative_tolerance", "%.17g", o->relative_tolerance);
     describe(film, "absolute_tolerance", "%.17g", o->absolute_tolerance);
+    describe(film, "relmse", "%.17g", o->relmse);
     describe(film, "confidence", "%.17g", o->confidence);
     describe(film, "min_spp", "%" PRIu32, o->min_spp);
     describe(film, "max_spp", "%" PRIu32, o->max_spp);
@@ -352,6 +355,7 @@ static void describe_outcome(sf_film *film) {
     describe(film, "nonfinite_samples", "%" PRIu64, s->nonfinite_samples);
     describe(film, "worst_half_width", "%.9g", s->worst_half_width);
     describe(film, "worst_pixel", "%" PRIu32 " %" PRIu32, s->worst_x, s->worst_y);
+    describe(film, "estimated_relmse", "%.9g", s->relmse);
     describe(film, "rounds", "%" PRIu32, s->rounds);
     describe(film, "render_seconds", "%.6g", s->seconds);
 }

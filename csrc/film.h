@@ -65,7 +65,7 @@ static inline uint32_t sf_cell_number(uint32_t x, uint32_t y) {
 typedef struct sf_film_row {
     uint64_t samples, nonfinite, reasons[SF_STOP_REASON_COUNT];
     double level; /* sum of (R+G+B)/3 */
-    double half_width, worst;
+    double half_width, worst, relmse;
     uint32_t worst_x;
 } sf_film_row;
 

@@ -84,6 +84,7 @@ static sf_status prepare(sf_rounds *r, sf_error *error) {
     r->context.aovs = o->aovs;
     if (!status) status = lay_out_cells(r, error);
     if (!status) status = hire_workers(r, error);
+    if (!status) status = sf_goal_prepare(r, error);
     if (status) return status;
     r->region = sf_rounds_count(r, r->open);
     if (o->samples && sf_rounds_budget(r) < r->region)
@@ -199,6 +200,7 @@ sf_status sf_render(const sf_scene *scene, const sf_render_options *options, sf_
     }
     sf_pool_destroy(r->pool);
     sf_aligned_free(r->workers);
+    sf_goal_destroy(r->goal);
     free(r->open);
     free(r->active);
     free(r->tiles);

@@ -9,6 +9,7 @@
 #include "mask.h"
 #include "platform.h"
 #include "render_options.h"
+#include "stopping.h"
 
 sf_render_options sf_render_options_default(void) {
     return (sf_render_options){.width = 512,
@@ -61,6 +62,7 @@ static sf_status check_budget(sf_render_options *o, sf_error *error) {
     sf_status status = check_range("spp", o->spp, 0, SF_MAX_SPP, error);
     if (!status) status = check_tolerance("relative_tolerance", o->relative_tolerance, error);
     if (!status) status = check_tolerance("absolute_tolerance", o->absolute_tolerance, error);
+    if (!status) status = check_tolerance("relmse", o->relmse, error);
     if (!status) status = check_range("max_spp", o->max_spp, 2, SF_MAX_SPP, error);
     if (!status) status = check_range("min_spp", o->min_spp, 2, o->max_spp, error);
     if (!status && o->roulette && (o->roulette < 2 || o->roulette > SF_MAX_BOUNCES))
@@ -76,7 +78,13 @@ static sf_status check_budget(sf_render_options *o, sf_error *error) {
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
                        "start is %u and spp is %u; a start goes with a fixed spp, and start + spp is at most %u",
                        o->start, o->spp, SF_MAX_SPP);
-    bool tolerance = o->relative_tolerance > 0 || o->absolute_tolerance > 0;
+    bool tolerance = sf_has_tolerance(o);
+    if (o->relmse > 0 && (o->spp || tolerance || o->samples))
+        return sf_fail(
+            error, SF_STATUS_INVALID_VALUE,
+            "relmse is %g beside spp, samples or a tolerance; give one: an error of the whole picture, one of "
+            "each pixel, a fixed count, or a budget",
+            o->relmse);
     if (o->spp && tolerance)
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
                        "spp is %u and a tolerance is given too; give one: a fixed count, or an accuracy", o->spp);
@@ -88,7 +96,7 @@ static sf_status check_budget(sf_render_options *o, sf_error *error) {
     if (o->spp && o->unbiased)
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
                        "spp is %u and unbiased is set too; a fixed count is unbiased already: give one", o->spp);
-    if (!o->spp && !tolerance && !o->samples && !(o->seconds > 0)) o->relative_tolerance = 0.01;
+    if (!o->spp && !tolerance && !(o->relmse > 0) && !o->samples && !(o->seconds > 0)) o->relative_tolerance = 0.01;
     return SF_STATUS_OK;
 }
 

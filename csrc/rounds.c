@@ -36,13 +36,19 @@ static void report_round(sf_rounds *r) {
         p->pixels_met += r->workers[i].met;
     }
     p->tolerance = fmax(r->film->summary.tolerance, 0);
+    if (r->goal && !r->second && sf_atomic_load(&r->state) == SF_RUNNING)
+        p->pixels_done = p->pixels - (r->beyond < p->pixels ? r->beyond : p->pixels);
     report(r, true);
 }
 
 /* ---- checkpoints ---- */
 
 sf_checkpoint sf_rounds_checkpoint(sf_rounds *r) {
-    return (sf_checkpoint){.film = r->film, .open = r->open, .active = r->active, .cells = sf_rounds_cell_count(r)};
+    return (sf_checkpoint){.film = r->film,
+                           .open = r->open,
+                           .active = r->active,
+                           .cells = sf_rounds_cell_count(r),
+                           .notes = sf_goal_notes(r->goal)};
 }
 
 /* Writes the state; a failure is a notice, and the next write is tried in its time. */
@@ -94,9 +100,18 @@ static void sample_round(sf_rounds *r) {
 
 /* ---- decisions ---- */
 
+static bool pool_is_active(const sf_rounds *r, uint32_t pool) {
+    sf_pool_range range = sf_stop_pool_range(r->film, pool);
+    for (uint32_t y = range.y0 / SF_CELL_SIZE; y * SF_CELL_SIZE < range.y1; ++y)
+        for (uint32_t x = range.x0 / SF_CELL_SIZE; x * SF_CELL_SIZE < range.x1; ++x)
+            if (r->active[(size_t)y * r->cell_columns + x]) return true;
+    return false;
+}
+
 static void look_at_pool(void *user, unsigned worker, size_t item) {
     (void)worker;
     sf_rounds *r = user;
+    if (!pool_is_active(r, (uint32_t)item)) return;
     sf_stop_look_at_pool(r->film, (uint32_t)item, r->look, r->lap);
 }
 
@@ -121,8 +136,24 @@ static bool decide_second(const sf_rounds *r, sf_film_pixel *pixel, size_t state
     return true;
 }
 
+/* What is told of a closed pixel. */
+static uint8_t told_reason(const sf_film_pixel *pixel, sf_stop_reason reason) {
+    bool doubted = pixel->doubt && (reason == SF_STOP_MAX_SAMPLES || reason == SF_STOP_OUT_OF_TIME);
+    return (uint8_t)(pixel->moments.nonfinite || doubted ? SF_STOP_SUSPICIOUS : reason);
+}
+
+/* Under a goal of the whole picture no pixel is met before that is. */
+static bool decide_goal(sf_rounds *r, uint32_t x, uint32_t y, bool full, size_t state) {
+    sf_film_pixel *pixel = r->film->pixels + (size_t)y * r->film->width + x;
+    sf_goal_take_note(r, x, y);
+    if (!full && state == SF_RUNNING) return false;
+    bool met = state == SF_SPENT && sf_goal_is_reached(r->goal);
+    pixel->reason = told_reason(pixel, met ? SF_STOP_MET : unmet_reason(r, full, state));
+    return true;
+}
+
 /* Whether the pixel is done, and why. */
-static bool decide_pixel(const sf_rounds *r, uint32_t x, uint32_t y, size_t state) {
+static bool decide_pixel(sf_rounds *r, uint32_t x, uint32_t y, size_t state) {
     sf_film_pixel *pixel = r->film->pixels + (size_t)y * r->film->width + x;
     const sf_render_options *o = &r->options;
     const sf_film_summary *summary = &r->film->summary;
@@ -133,20 +164,12 @@ static bool decide_pixel(const sf_rounds *r, uint32_t x, uint32_t y, size_t stat
     if (o->spp && !full && state == SF_RUNNING) return false;          /* nothing to tell before the end */
     if (sf_film_taken(pixel) == 0 && state != SF_RUNNING) return true; /* not a page of it is touched; see close_all */
     pixel->half_width = sf_stop_half_width(r->film, o, x, y);
+    if (r->goal) return decide_goal(r, x, y, full, state);
     bool met = !o->spp && summary->tolerance >= 0 && sf_film_taken(pixel) >= o->min_spp &&
                (double)pixel->half_width <= summary->tolerance;
     if (!met && !full && state == SF_RUNNING) return false;
-    sf_stop_reason reason = met ? SF_STOP_MET : unmet_reason(r, full, state);
-    bool doubted = pixel->doubt && (reason == SF_STOP_MAX_SAMPLES || reason == SF_STOP_OUT_OF_TIME);
-    pixel->reason = (uint8_t)(pixel->moments.nonfinite || doubted ? SF_STOP_SUSPICIOUS : reason);
+    pixel->reason = told_reason(pixel, met ? SF_STOP_MET : unmet_reason(r, full, state));
     return true;
-}
-
-/* Whether the pixel is of the picture, not of the margin that was traced with it. */
-static bool counts(const sf_film *film, const sf_film_pixel *pixel) {
-    uint32_t i = (uint32_t)(pixel - film->pixels);
-    uint32_t x = i % film->width + film->x0 - film->crop_x0, y = i / film->width + film->y0 - film->crop_y0;
-    return x < film->crop_width && y < film->crop_height && sf_film_counts(film, x, y);
 }
 
 /* Closes the pixels that are done, and counts those of the picture. */
@@ -155,10 +178,9 @@ static void decide_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
         if (!(r->active[cell] >> m & 1u)) continue;
         if (!decide_pixel(r, sf_rounds_x(r, cell, m), sf_rounds_y(r, cell, m), r->sampled)) continue;
         r->open[cell] &= ~(UINT64_C(1) << m);
-        const sf_film_pixel *pixel = sf_rounds_pixel(r, cell, m);
-        if (!counts(r->film, pixel)) continue;
+        if (!sf_rounds_counts(r, sf_rounds_x(r, cell, m), sf_rounds_y(r, cell, m))) continue;
         ++worker->done;
-        worker->met += pixel->reason == SF_STOP_MET;
+        worker->met += sf_rounds_pixel(r, cell, m)->reason == SF_STOP_MET;
     }
 }
 
@@ -181,8 +203,7 @@ void sf_rounds_measure_level(sf_rounds *r) {
 void sf_rounds_set_tolerance(sf_rounds *r) {
     const sf_render_options *o = &r->options;
     sf_film_summary *summary = &r->film->summary;
-    if (o->relative_tolerance > 0 || o->absolute_tolerance > 0)
-        summary->tolerance = fmax(o->absolute_tolerance, o->relative_tolerance * summary->level);
+    if (sf_has_tolerance(o)) summary->tolerance = fmax(o->absolute_tolerance, o->relative_tolerance * summary->level);
 }
 
 /* Fixes level and tolerance after the first min_spp samples. */

@@ -10,13 +10,15 @@
  *
  * With a tolerance, or a fixed count, all open pixels move on together until they are closed.
  * With a budget alone a falling target takes the tolerance's place: the pixels beyond it are
- * brought on, the least sampled first, until none is, and the target falls. */
+ * brought on, the least sampled first, until none is, and the target falls. So it is with a goal
+ * for the whole picture, whose threshold of gain is told from it; see goal.h. */
 #ifndef SUNFLECK_ROUNDS_H
 #define SUNFLECK_ROUNDS_H
 
 #include "batch.h"
 #include "checkpoint.h"
 #include "film.h"
+#include "goal.h"
 #include "pool.h"
 #include "stopping.h"
 #include "sunfleck/rng.h"
@@ -57,7 +59,9 @@ typedef struct sf_rounds {
     bool in_lap;       /* a lap has begun and not ended */
     uint32_t look;     /* where the lap ends, unless the render does */
     sf_lap lap;
-    double target; /* of a budget: half-widths beyond it are to be lowered */
+    double target;   /* of a budget: half-widths beyond it are to be lowered */
+    sf_goal *goal;   /* of the whole picture; NULL where there is none */
+    uint64_t beyond; /* pixels that the goal still wants more samples of */
     bool level_fixed;
     bool second; /* the pilot is over: the set that the picture shows is taken */
     double start, deadline;
@@ -88,11 +92,18 @@ static inline sf_film_pixel *sf_rounds_pixel(const sf_rounds *r, uint32_t cell, 
     return r->film->pixels + (size_t)sf_rounds_y(r, cell, m) * r->film->width + sf_rounds_x(r, cell, m);
 }
 
+/* Whether a pixel of the film is of the picture, not of the margin that was traced with it. */
+static inline bool sf_rounds_counts(const sf_rounds *r, uint32_t x, uint32_t y) {
+    const sf_film *film = r->film;
+    uint32_t u = x + film->x0 - film->crop_x0, v = y + film->y0 - film->crop_y0;
+    return u < film->crop_width && v < film->crop_height && sf_film_counts(film, u, v);
+}
+
 /* The most samples that a pixel may take. */
 static inline uint32_t sf_rounds_most(const sf_rounds *r) {
     const sf_render_options *o = &r->options;
-    bool adaptive = o->relative_tolerance > 0 || o->absolute_tolerance > 0;
-    return o->spp ? o->start + o->spp : adaptive ? o->max_spp : SF_MAX_SPP;
+    bool bounded = sf_has_tolerance(o) || o->relmse > 0;
+    return o->spp ? o->start + o->spp : bounded ? o->max_spp : SF_MAX_SPP;
 }
 
 /* The cells of a tile that are in the film: columns x0 .. x1 - 1, rows y0 .. y1 - 1 of it. */

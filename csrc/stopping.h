@@ -48,6 +48,11 @@ static inline uint32_t sf_stop_quarter_more(uint32_t n) {
     return n / SF_LANES * SF_LANES + step;
 }
 
+/* Whether a tolerance is given. */
+static inline bool sf_has_tolerance(const sf_render_options *o) {
+    return o->relative_tolerance > 0 || o->absolute_tolerance > 0;
+}
+
 /* The least count above n at which the rule looks, whatever the render's own end. */
 uint32_t sf_stop_next_look(const sf_render_options *options, uint32_t n);
 
@@ -71,8 +76,14 @@ void sf_dyadic_add(sf_dyadic *dyadic, double mean, uint32_t block, sf_lap lap);
 /* How many cells the decay is pooled over in this film. */
 uint32_t sf_stop_pool_count(const sf_film *film);
 
-/* Looks at the pixels of one pooling cell that have `look` samples: fills their `variance` and
- * `look`. */
+/* The pixels of a pooling cell: columns x0 .. x1 - 1, rows y0 .. y1 - 1 of the film. */
+typedef struct sf_pool_range {
+    uint32_t x0, y0, x1, y1;
+} sf_pool_range;
+sf_pool_range sf_stop_pool_range(const sf_film *film, uint32_t pool);
+
+/* Looks at the pixels of one pooling cell that have `look` samples, of which there are some: fills their
+ * `variance` and `look`. */
 void sf_stop_look_at_pool(sf_film *film, uint32_t pool, uint32_t look, sf_lap lap);
 
 /* Sets how many standard errors make half-widths: first the rule's where nothing tells how well the
@@ -81,6 +92,13 @@ void sf_stop_set_factors(sf_film *film, const sf_render_options *options);
 
 /* The one that the pixel's half-width has. */
 double sf_stop_factor(const sf_film *film, const sf_render_options *options, const sf_film_pixel *pixel);
+
+/* The pixel's part in relMSE: the variance of its mean of (R+G+B)/3 by the rule, with dyadic's safety, over the
+ * square of each channel and 0.01, averaged. 0 where no sample differed; infinity below two samples. */
+double sf_stop_relative_error(const sf_film *film, const sf_film_pixel *pixel);
+
+/* The factor by which variance falls as samples double, around pixel (x, y) of the film: 2 to 2^2.5. */
+float sf_stop_decay(const sf_film *film, uint32_t x, uint32_t y);
 
 /* The half-width of pixel (x, y) of the film by the rule. To be called when all pools have been
  * looked at. Infinity where fewer than two samples were taken. */

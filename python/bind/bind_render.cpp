@@ -103,6 +103,7 @@ nb::typed<nb::dict, nb::str, nb::any> summary_of(const film_handle &self) {
     d["worst_half_width"] = s.worst_half_width;
     d["worst_pixel"] = nb::make_tuple(s.worst_x, s.worst_y);
     d["mean_half_width"] = s.mean_half_width;
+    d["relmse"] = s.relmse;
     d["seconds"] = s.seconds;
     d["threads"] = s.threads;
     d["rounds"] = s.rounds;
@@ -188,7 +189,7 @@ void set_mask(sf_render_options &options, const pixel_mask &mask) {
 }
 
 film_handle *render(const scene_handle &scene, uint32_t width, uint32_t height, std::array<uint32_t, 4> crop,
-                    uint32_t spp, uint32_t start, double relative_tolerance, double absolute_tolerance,
+                    uint32_t spp, uint32_t start, double relative_tolerance, double absolute_tolerance, double relmse,
                     double confidence, uint32_t min_spp, uint32_t max_spp, uint64_t samples, double seconds,
                     const std::string &pattern, const std::string &pixel_filter, const std::string &stop, bool unbiased,
                     const std::string &seeds, uint64_t seed, uint32_t threads, uint32_t tile_size, uint32_t roulette,
@@ -204,6 +205,7 @@ film_handle *render(const scene_handle &scene, uint32_t width, uint32_t height, 
     options.start = start;
     options.relative_tolerance = relative_tolerance;
     options.absolute_tolerance = absolute_tolerance;
+    options.relmse = relmse;
     options.confidence = confidence;
     options.min_spp = min_spp;
     options.max_spp = max_spp;
@@ -266,6 +268,7 @@ void bind_render(nb::module_ &m) {
         .def_ro("time_limit", &sf_progress::time_limit)
         .def_ro("pixels_met", &sf_progress::pixels_met)
         .def_ro("tolerance", &sf_progress::tolerance)
+        .def_ro("relmse", &sf_progress::relmse)
         .def_prop_ro("round_finished", [](const sf_progress &p) { return p.round_finished != 0; });
 
     nb::class_<film_handle>(m, "Film")
@@ -307,10 +310,10 @@ void bind_render(nb::module_ &m) {
     });
 
     m.def("render", &render, nb::rv_policy::take_ownership, "scene"_a, nb::kw_only(), "width"_a, "height"_a, "crop"_a,
-          "spp"_a, "start"_a, "relative_tolerance"_a, "absolute_tolerance"_a, "confidence"_a, "min_spp"_a, "max_spp"_a,
-          "samples"_a, "seconds"_a, "pattern"_a, "pixel_filter"_a, "stop"_a, "unbiased"_a, "seeds"_a, "seed"_a,
-          "threads"_a, "tile_size"_a, "roulette"_a, "profile"_a, "aovs"_a, "mask"_a.none(), "checkpoint"_a.none(),
-          "checkpoint_seconds"_a, "notice"_a, "progress"_a.none());
+          "spp"_a, "start"_a, "relative_tolerance"_a, "absolute_tolerance"_a, "relmse"_a, "confidence"_a, "min_spp"_a,
+          "max_spp"_a, "samples"_a, "seconds"_a, "pattern"_a, "pixel_filter"_a, "stop"_a, "unbiased"_a, "seeds"_a,
+          "seed"_a, "threads"_a, "tile_size"_a, "roulette"_a, "profile"_a, "aovs"_a, "mask"_a.none(),
+          "checkpoint"_a.none(), "checkpoint_seconds"_a, "notice"_a, "progress"_a.none());
     m.def("load_film", &load_film, nb::rv_policy::take_ownership, "path"_a);
     m.def("merge_films", &merge_films, nb::rv_policy::take_ownership, "films"_a);
 }

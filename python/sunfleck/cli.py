@@ -114,6 +114,7 @@ def _add_render(commands: argparse._SubParsersAction[_Parser]) -> None:
     accuracy = parser.add_argument_group("accuracy, samples and time (default: --tolerance 0.01)")
     add = accuracy.add_argument
     add("--tolerance", type=float, metavar="X", help="a pixel is done when its half-width is X of the mean level")
+    add("--relmse", type=float, metavar="X", help="instead, the relative mean square error of the whole picture")
     add("--confidence", type=float, default=0.95, metavar="P", help="of the half-widths; default 0.95")
     add("--spp", type=int, metavar="N", help="a fixed count of samples a pixel; not with --tolerance")
     add("--min-spp", type=int, default=32, metavar="N", help="before the first decision; default 32")
@@ -251,6 +252,7 @@ def _rendered(given: argparse.Namespace) -> sf.Image:
         given.height,
         spp=given.spp,
         tolerance=given.tolerance,
+        relmse=given.relmse,
         confidence=given.confidence,
         min_spp=given.min_spp,
         max_spp=given.max_spp,

@@ -73,6 +73,9 @@ class Summary:
         Of the half-widths.
     worst_half_width, mean_half_width : float
         In linear radiance.
+    relmse : float
+        Estimate of the mean over pixels and channels of (x − r)² / (r² + 0.01), from the variances that
+        the half-widths came from; infinite where a pixel has fewer than two samples.
     worst_pixel : tuple of 2 ints
         (x, y) of the worst half-width, in pixels of the full frame.
     seconds : float
@@ -85,6 +88,8 @@ class Summary:
         seconds`` is decisions and waiting.
     relative : bool
         Whether the tolerance was asked for as a share of the level.
+    goal : float
+        The relMSE that was asked for; 0 where none was.
     """
 
     pixels: int
@@ -103,6 +108,8 @@ class Summary:
     rounds: int
     work: dict[str, float] = field(default_factory=dict)
     relative: bool = False
+    relmse: float = math.inf
+    goal: float = 0.0
 
     @property
     def share_met(self) -> float:
@@ -125,6 +132,11 @@ class Summary:
             met = f"{_percent(self.share_met)} of pixels met {self.tolerance / unit:.3g} {confidence}"
             return f"{met}{early}; {worst}"
         early = early.replace("100 % ", "")
+        if self.goal > 0:
+            reached = "reached" if self.relmse <= self.goal else "not reached"
+            samples = f"{self.samples / self.pixels:.4g} samples a pixel{early}"
+            relmse = f"relMSE {self.relmse:.3g}, {reached}: {self.goal:.3g} was asked for"
+            return f"{relmse}; {samples}; {worst} {confidence}"
         samples = f"{self.samples / self.pixels:.4g} samples a pixel{early}"
         return f"{samples}; half-width {confidence}: mean {self.mean_half_width:.3g}, {worst}"
 
@@ -215,6 +227,7 @@ class Image:
         """What the render came to; printed, it is a line (`Summary.line`) and a small table."""
         counts = self._film.summary()
         share = float(self.metadata["relative_tolerance"]) * counts["level"]
+        counts["goal"] = float(self.metadata["relmse"])
         return Summary(**counts, relative=share > 0 and share >= float(self.metadata["absolute_tolerance"]))
 
     def save(self, path: FilePath) -> None:
@@ -304,6 +317,15 @@ def _tolerance(value: float | Tolerance | None) -> tuple[float, float]:
     return value.relative, value.absolute
 
 
+def _goal(value: float | None) -> float:
+    if value is None:
+        return 0.0
+    goal = number("relmse", value)
+    if goal == 0:
+        raise ValueError("relmse is 0, which no number of samples reaches; give one above 0")
+    return goal
+
+
 def _count(name: str, value: int | None, bits: int = 32) -> int:
     """A count that may be None, which is C's 0; so that 0 itself must be refused here."""
     if value is None:
@@ -376,6 +398,8 @@ class _Bar:
         spent = f"{progress.samples / progress.pixels:.0f} samples a pixel"
         if progress.time_limit:
             spent += f", {progress.seconds:.0f} of {progress.time_limit:g} s"
+        if progress.relmse > 0:
+            spent = f"relMSE {progress.relmse:.2g}, {spent}"
         if progress.tolerance > 0:
             spent = f"{_percent(progress.pixels_met / progress.pixels)} met, {spent}"
         self._bar.set_postfix_str(spent, refresh=False)
@@ -393,6 +417,7 @@ def render(
     spp: int | None = None,
     start: int = 0,
     tolerance: float | Tolerance | None = None,
+    relmse: float | None = None,
     confidence: float = 0.95,
     min_spp: int = 32,
     max_spp: int = 4096,
@@ -429,6 +454,11 @@ def render(
     tolerance : float or Tolerance, optional
         A pixel is done when its half-width is within it. A plain number is relative to the
         level: the mean of (R+G+B)/3 over the frame after ``min_spp``. With nothing given: 0.01.
+    relmse : float, optional
+        A goal for the whole picture in place of a tolerance: that the mean over pixels and channels of
+        (x − r)² / (r² + 0.01), by what the half-widths came from, be at most this. Samples go where one more
+        lowers it most, which takes the fewest: pixels end with half-widths of their own. Not with ``spp``,
+        ``tolerance`` or ``samples``.
     confidence : float
         Of the half-widths, per pixel, in (0, 1).
     min_spp, max_spp : int
@@ -549,6 +579,7 @@ def render(
         "start": integer("start", start, bits=32),
         "relative_tolerance": relative,
         "absolute_tolerance": absolute,
+        "relmse": _goal(relmse),
         "confidence": number("confidence", confidence),
         "min_spp": integer("min_spp", min_spp, bits=32),
         "max_spp": integer("max_spp", max_spp, bits=32),

@@ -646,6 +646,9 @@ static void test_bad_options_are_refused_by_name(void **state) {
     REFUSED("relative_tolerance is -0.1", (options.spp = 0, options.relative_tolerance = -0.1));
     REFUSED("absolute_tolerance is nan", (options.spp = 0, options.absolute_tolerance = NAN));
     REFUSED("absolute_tolerance is inf", (options.spp = 0, options.absolute_tolerance = INFINITY));
+    REFUSED("relmse is -1", (options.spp = 0, options.relmse = -1));
+    REFUSED("relmse is 0.1 beside spp", options.relmse = 0.1);
+    REFUSED("relmse is 0.1 beside spp", (options.spp = 0, options.relmse = 0.1, options.samples = 1000));
     REFUSED("confidence is 0", options.confidence = 0);
     REFUSED("confidence is 1", options.confidence = 1);
     REFUSED("confidence is nan", options.confidence = NAN);

@@ -66,7 +66,7 @@ typedef enum sf_seed_policy {
 /* Why a pixel stopped. */
 typedef enum sf_stop_reason {
     SF_STOP_FIXED = 0,   /* the fixed count asked for was taken */
-    SF_STOP_MET,         /* half-width within the tolerance */
+    SF_STOP_MET,         /* half-width within the tolerance; or the goal of the whole picture reached */
     SF_STOP_MAX_SAMPLES, /* max_spp reached first */
     SF_STOP_OUT_OF_TIME, /* the time limit came first */
     SF_STOP_SUSPICIOUS,  /* samples that were not finite were dropped; or, by the rule dyadic, a heavy
@@ -122,6 +122,8 @@ typedef struct sf_progress {
     int round_finished;        /* 1 at a round's end, 0 for the calls in between */
     uint64_t pixels_met;       /* of those done, stopped because they met the tolerance */
     double tolerance;          /* in linear radiance; 0 until it is known, or where none was asked */
+    double relmse;             /* of a goal: the estimate before the last lap; pixels_done are then those that it
+                                  wants no more samples of. 0 where none was asked */
 } sf_progress;
 
 /* Called from the thread that called sf_render, at every round's end and at least every 50 ms;
@@ -147,6 +149,10 @@ typedef struct sf_render_options {
     double absolute_tolerance;    /* linear radiance, >= 0; default 0. A pixel is done when its
                                    half-width is at most max(absolute, relative * level). With spp,
                                    seconds and both tolerances 0, the relative one is 0.01 */
+    double relmse;                /* goal of the whole picture in place of a tolerance for each pixel: that the mean
+                                     over pixels and channels of (x - r)^2 / (r^2 + 0.01) be at most so much,
+                                     by the variances that the stopping rule tells (dyadic: times its safety of
+                                     1.38). Samples go where they lower it most; >= 0; default 0: none */
     double confidence;            /* of the half-widths, in (0, 1); default 0.95 */
     uint32_t min_spp;             /* before any decision, 2 .. max_spp; default 32 */
     uint32_t max_spp;             /* 2 .. SF_MAX_SPP; default 4096 */
@@ -310,6 +316,9 @@ typedef struct sf_film_summary {
     double worst_half_width;   /* the largest, and where */
     uint32_t worst_x, worst_y; /* in pixels of the full frame */
     double mean_half_width;
+    double relmse;  /* estimate of the mean over pixels and channels of (x - r)^2 / (r^2 + 0.01), from the variances
+                       that the half-widths came from (dyadic: times its safety of 1.38); infinity where a pixel has
+                       fewer than two samples */
     double seconds; /* of the render call */
     uint32_t threads, rounds;
     double work_seconds[SF_WORK_COUNT]; /* of all threads, by sf_work; 0 unless options.profile. What is left of
