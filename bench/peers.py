@@ -51,7 +51,7 @@ def look(camera: SimpleNamespace) -> tuple[np.ndarray, np.ndarray, np.ndarray, f
 
 
 class Sunfleck:
-    """Modes: fixed (value: spp), adaptive (value: relative tolerance), roulette (value: spp; from bounce 2)."""
+    """Modes: fixed (value: spp), adaptive (relative tolerance), goal (relMSE), roulette (spp; from bounce 2)."""
 
     def __init__(self, scene: SimpleNamespace) -> None:
         import sunfleck as sf
@@ -62,9 +62,12 @@ class Sunfleck:
         self.render_scene = sf.render
 
     def render(self, mode: str, value: float, seed: int) -> tuple[float, float, np.ndarray]:
-        options: dict[str, Any] = {"fixed": {"spp": int(value)}, "roulette": {"spp": int(value), "roulette": 2}}.get(
-            mode, {"tolerance": value, "max_spp": 65536}
-        )
+        options: dict[str, Any] = {
+            "fixed": {"spp": int(value)},
+            "roulette": {"spp": int(value), "roulette": 2},
+            "adaptive": {"tolerance": value, "max_spp": 65536},
+            "goal": {"relmse": value, "max_spp": 65536},
+        }[mode]
         start = time.perf_counter()
         image = self.render_scene(self.scene, SIZE, SIZE, seed=seed, **options)
         seconds = time.perf_counter() - start

@@ -44,9 +44,11 @@ LEAST = {"penumbra": 2.5e-6, "defocus": 1e-5, "cornell": 1e-4}  # the reference 
 SPP = [2**k for k in range(2, 17)]
 SQUARES = [4**k for k in range(1, 9)]  # Mitsuba's multijitter wants them
 TOLERANCES = [0.1 * 2 ** (-k / 2) for k in range(15)]
+GOALS = [8e-3 * 2 ** (-k / 2) for k in range(26)]
 LADDERS: dict[str, list[float]] = {
     "sunfleck fixed": SPP,
     "sunfleck adaptive": TOLERANCES,
+    "sunfleck goal": GOALS,
     "sunfleck roulette": SPP,
     "mitsuba direct": SQUARES,
     "mitsuba path": SQUARES,
@@ -57,6 +59,7 @@ LADDERS: dict[str, list[float]] = {
     "cycles adaptive": [0.04 * 2**-k for k in range(8)],
     "luxcore fixed": SPP,
 }
+OPEN = ("sunfleck adaptive", "sunfleck goal")
 MODULES = {"mitsuba": "mitsuba", "cycles": "bpy", "luxcore": "pyluxcore"}
 DIRECT_ONLY = ("mitsuba direct", "mitsuba direct-independent")
 BOUNCES_ONLY = ("sunfleck roulette", "mitsuba roulette")
@@ -156,7 +159,7 @@ def run_once(scene: str, who: list[str], workers: dict[str, Worker], run: str, a
                 {"scene": scene, "run": run, "who": name, "value": value, "seconds": seconds, "samples": samples}
                 | {"relmse": error}
             )
-            growth = 1.5 if mode == "adaptive" else going[name][0] / value if going[name] else 0
+            growth = 1.5 if name in OPEN else going[name][0] / value if going[name] else 0
             if not going[name] or error < LEAST[scene] or seconds * growth > args.cap:
                 del going[name]
     add_results(records)
@@ -251,9 +254,9 @@ def report(args: argparse.Namespace) -> None:
             print(f"\n{scene}, {column}:")
             for who, runs in values.items():
                 line = f"  {who:28} {state(list(runs.values()))}"
-                for ours in ("sunfleck", "sunfleck fixed", "sunfleck adaptive", "sunfleck roulette"):
+                for ours in ("sunfleck", "sunfleck fixed", "sunfleck adaptive", "sunfleck goal", "sunfleck roulette"):
                     both = [runs[run] / values[ours][run] for run in runs if run in values.get(ours, {})]
-                    if both and (not who.startswith("sunfleck") or ours != who == "sunfleck adaptive"):
+                    if both and (not who.startswith("sunfleck") or ours != who in OPEN):
                         line += f"; over {ours} {state(both)}"
                 print(line)
 

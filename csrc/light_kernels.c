@@ -88,13 +88,13 @@ static void light(sf_batch *b, const sf_scene *scene, uint32_t count, bool weigh
     }
 }
 
-/* A counting sort. */
+/* A counting sort without a branch: the rays that have no contribution get a bin of their own, the last. */
 static uint32_t sort_shadow_rays(sf_batch *b, uint32_t count) {
-    uint32_t place[SHADOW_BINS + 1] = {0};
-    for (uint32_t i = 0; i < count; ++i) place[b->bin[i] + 1] += b->alive[i];
+    uint32_t place[SHADOW_BINS + 2] = {0};
+    for (uint32_t i = 0; i < count; ++i) b->bin[i] = b->alive[i] ? b->bin[i] : SHADOW_BINS;
+    for (uint32_t i = 0; i < count; ++i) ++place[b->bin[i] + 1];
     for (uint32_t bin = 0; bin < SHADOW_BINS; ++bin) place[bin + 1] += place[bin];
-    for (uint32_t i = 0; i < count; ++i)
-        if (b->alive[i]) b->order[place[b->bin[i]]++] = i;
+    for (uint32_t i = 0; i < count; ++i) b->order[place[b->bin[i]]++] = i;
     return place[SHADOW_BINS - 1];
 }
 

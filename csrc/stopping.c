@@ -207,9 +207,10 @@ static float power_of(float decay, int power) {
 
 /* The mean over channels of 1 / (r^2 + 0.01): what makes a variance an error of relMSE. */
 static double relative_weight(const sf_film_pixel *pixel) {
-    double sum = 0;
-    for (int c = 0; c < 3; ++c) sum += 1 / (pixel->moments.mean[c] * pixel->moments.mean[c] + RELMSE_FLOOR);
-    return sum / 3;
+    double square[3];
+    for (int c = 0; c < 3; ++c) square[c] = pixel->moments.mean[c] * pixel->moments.mean[c] + RELMSE_FLOOR;
+    double pair = square[0] * square[1];
+    return (pair + (square[0] + square[1]) * square[2]) / (3 * pair * square[2]);
 }
 
 /* The mean over the 3 x 3 pixels around of the variance at this pixel's look; those that stopped
