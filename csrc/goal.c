@@ -11,7 +11,7 @@
 
 #define AIM 0.97         /* of the goal, so that estimates of later looks hardly ever pass it */
 #define ONE (1u << 24)   /* a pixel whose error is the goal, in the sums */
-#define MOST 0x1p37      /* that a pixel adds to them */
+#define MOST 0x1p62      /* that a pixel adds to them */
 #define FALLS 8          /* classes of the factor by which error falls as samples double */
 #define FALL_STEP 0.523f /* from 2 to 2^2.5 */
 #define GAINS 2048       /* bins of gains: the upper bits of a float, an eighth of an octave each */
@@ -87,10 +87,11 @@ bool sf_goal_is_reached(const sf_goal *goal) { return goal->reached; }
 
 /* ---- gains ---- */
 
-/* The bin of what a sample more gains: e (1 - 1/d) / n. */
+/* The bin of what a sample more gains: e (1 - 1/d) / n; what is no number counts as infinite. */
 static uint32_t gain_bin(const sf_goal_note *pixel, float fall) {
     float gain = pixel->around * (1 - 1 / fall) / (float)(pixel->taken ? pixel->taken : 1);
     uint32_t bits;
+    if (!(gain >= 0)) gain = INFINITY;
     memcpy(&bits, &gain, sizeof bits);
     return bits >> GAIN_SHIFT;
 }
@@ -114,6 +115,9 @@ static uint32_t fall_class(float fall) {
 
 /* ---- the census ---- */
 
+/* Ends at the largest number, whatever the order. */
+static void add_error(uint64_t *sum, uint64_t error) { *sum = error > UINT64_MAX - *sum ? UINT64_MAX : *sum + error; }
+
 static void count_cell(const sf_rounds *r, census *c, uint32_t cell) {
     float fall = fall_in(r, cell);
     uint64_t *errors = c->error[fall_class(fall)];
@@ -123,10 +127,10 @@ static void count_cell(const sf_rounds *r, census *c, uint32_t cell) {
         const sf_goal_note *pixel = r->goal->notes + (size_t)y * r->film->width + x;
         double part = (double)pixel->error / r->options.relmse * ONE;
         uint64_t error = sf_rounds_counts(r, x, y) ? (uint64_t)(part < MOST ? part : MOST) : 0;
-        c->whole += error;
+        add_error(&c->whole, error);
         if (!(r->open[cell] >> m & 1u)) continue;
         uint32_t bin = gain_bin(pixel, fall);
-        errors[bin] += error;
+        add_error(errors + bin, error);
         ++c->count[bin];
         c->least[bin] = pixel->taken < c->least[bin] ? pixel->taken : c->least[bin];
     }
@@ -139,9 +143,9 @@ static void count_row(void *user, unsigned worker, size_t row) {
 }
 
 static void add_census(census *sum, const census *part) {
-    sum->whole += part->whole;
+    add_error(&sum->whole, part->whole);
     for (int f = 0; f < FALLS; ++f)
-        for (int g = 0; g < GAINS; ++g) sum->error[f][g] += part->error[f][g];
+        for (int g = 0; g < GAINS; ++g) add_error(&sum->error[f][g], part->error[f][g]);
     for (int g = 0; g < GAINS; ++g) {
         sum->count[g] += part->count[g];
         sum->least[g] = part->least[g] < sum->least[g] ? part->least[g] : sum->least[g];
@@ -214,7 +218,7 @@ bool sf_goal_choose(sf_rounds *r) {
     const census *c = take_census(r);
     double goal = (double)r->film->counted * ONE;
     r->progress.relmse = (double)c->whole / goal * r->options.relmse;
-    r->goal->reached = c->whole + r->film->counted <= (uint64_t)r->film->counted * ONE; /* parts were rounded down */
+    r->goal->reached = c->whole <= r->film->counted * (UINT64_C(1) * ONE - 1); /* parts were rounded down */
     if (r->goal->reached) return false;
     r->goal->threshold = choose_threshold(c, AIM * goal);
     uint32_t least = UINT32_MAX;

@@ -116,7 +116,10 @@ static bool merge_pixel(const sf_film *const *films, size_t count, uint32_t x, u
                             films[i]->signed_pixels + (pixel - films[i]->pixels), merged->negative_part);
         out->reason = reason;
     }
-    if (sampled > 1) out->half_width = (float)(sqrt(square) / (double)out->moments.count);
+    if (sampled > 1) {
+        out->half_width = (float)(sqrt(square) / (double)out->moments.count);
+        out->look = 0; /* it is no look's */
+    }
     return found > 0;
 }
 

@@ -15,22 +15,25 @@
 #include "coordinates_kernels.h"
 #include "sunfleck/render.h"
 
-enum { GROUPS = SF_PLAN_MAX_GROUPS };
+enum { GROUPS = 5 * SF_MAX_BOUNCES };
 
 static sf_coordinates coordinates;
 static float made[2][SF_PATHS], expected[2][SF_PATHS];
 
-/* As long a path as there is: of each bounce a light, a surface, a choice and a lobe. */
+/* As long a path as there is: of each bounce all that it can have. */
 static void prepare(sf_pattern pattern) {
     sf_plan plan;
     sf_error error;
     memset(&plan, 0, sizeof plan);
+    static const sf_dimension_use uses[5] = {SF_DIMENSION_LIGHT, SF_DIMENSION_SURFACE, SF_DIMENSION_CHOICE,
+                                             SF_DIMENSION_LOBE, SF_DIMENSION_FOG};
     for (uint32_t g = 0; g < GROUPS; ++g) {
-        uint32_t count = g % 4 < 2 ? 2 : 1;
+        uint32_t count = g % 5 < 2 ? 2 : 1;
         plan.dimensions[g] = (sf_plan_dimensions){
-            .use = SF_DIMENSION_LIGHT, .bounce = 1 + g / 4, .first = plan.dimensions_per_path, .count = count};
+            .use = uses[g % 5], .bounce = 1 + g / 5, .first = plan.dimensions_per_path, .count = count};
         plan.dimensions_per_path += count;
     }
+    plan.max_bounces = SF_MAX_BOUNCES;
     plan.dimension_group_count = GROUPS;
     assert_int_equal(sf_coordinates_init(&coordinates, pattern, &plan, 48, 1, &error), SF_STATUS_OK);
 }

@@ -106,3 +106,9 @@ def test_the_command_line_takes_it(tmp_path: Path, capsys: pytest.CaptureFixture
     assert main(["render", "penumbra", "--relmse", "1e-4", *size]) == 0
     assert "relMSE" in capsys.readouterr().out
     assert file.stat().st_size > 1000
+
+
+def test_replicates_halve_the_estimate(cornell: sf.Scene) -> None:
+    one, two = (sf.render(cornell, SIZE, SIZE, spp=64, seed=seed) for seed in (1, 2))
+    merged = sf.merge([one, two]).summary().relmse
+    assert 0.4 * one.summary().relmse < merged < 0.8 * one.summary().relmse
