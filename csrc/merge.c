@@ -93,17 +93,22 @@ static const sf_film_pixel *pixel_at(const sf_film *film, uint32_t x, uint32_t y
 }
 
 /* Adds the films' pixels in their order; false where none has it. Errors of independent estimates
- * add in squares: the mean is sum n_i m_i / N, its half-width sqrt(sum (n_i h_i)^2) / N. */
+ * add in squares: the mean is sum n_i m_i / N, its half-width sqrt(sum (n_i h_i)^2) / N, and so with the
+ * variances of their looks. */
 static bool merge_pixel(const sf_film *const *films, size_t count, uint32_t x, uint32_t y, sf_film *merged,
                         sf_film_pixel *out) {
-    double square = 0;
-    size_t found = 0, sampled = 0;
+    double square = 0, variance = 0;
+    size_t found = 0, sampled = 0, looked_at = 0;
     for (size_t i = 0; i < count; ++i) {
         const sf_film_pixel *pixel = pixel_at(films[i], x, y);
         if (!pixel) continue;
         double weighted = (double)pixel->moments.count * (double)pixel->half_width;
-        if (pixel->moments.count) square += weighted * weighted;
-        sampled += pixel->moments.count > 0;
+        if (pixel->moments.count) {
+            square += weighted * weighted;
+            variance += (double)pixel->moments.count * (double)pixel->moments.count * (double)pixel->variance;
+            looked_at += pixel->look > 0;
+            ++sampled;
+        }
         uint8_t reason = found && openness(out->reason) > openness(pixel->reason) ? out->reason : pixel->reason;
         if (found++ == 0)
             *out = *pixel;
@@ -118,7 +123,8 @@ static bool merge_pixel(const sf_film *const *films, size_t count, uint32_t x, u
     }
     if (sampled > 1) {
         out->half_width = (float)(sqrt(square) / (double)out->moments.count);
-        out->look = 0; /* it is no look's */
+        out->variance = (float)(variance / (double)out->moments.count / (double)out->moments.count);
+        if (looked_at < sampled) out->look = 0;
     }
     return found > 0;
 }
