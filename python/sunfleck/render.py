@@ -520,8 +520,8 @@ def render(
     checkpoint : path-like, optional
         A file that the state of the render is written to while it runs, when it is stopped and at
         its end, and that it goes on from where the file exists, bit for bit as if it had never
-        stopped. ``spp``, ``max_spp`` and ``seconds`` may be larger than the file's and the tolerance
-        smaller: what was sampled is kept. Any other difference is refused. Not with other
+        stopped. ``spp``, ``max_spp`` and ``seconds`` may be larger than the file's, the tolerance or
+        ``relmse`` smaller: what was sampled is kept. Any other difference is refused. Not with other
         ``seeds`` than "pixel".
     checkpoint_seconds : float
         Between two writes while the render runs; at least 0.

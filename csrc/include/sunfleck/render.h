@@ -220,7 +220,7 @@ typedef struct sf_film sf_film;
  * when it is stopped, and at its end, beside and renamed, so that the file is whole at every
  * moment. A render that finds the file goes on from it, bit for bit as if it had never stopped;
  * `seconds` counts the time of all calls together. spp and max_spp may be larger than the file's
- * and the tolerance smaller: the samples taken are kept, more are added. Any other difference that
+ * and the tolerance or relmse smaller: the samples taken are kept, more are added. Any other difference that
  * decides the picture (scene, options, seed, instruction set, versions) is refused with
  * SF_STATUS_INVALID_VALUE, a file that is damaged or no checkpoint with SF_STATUS_IO, before any
  * work; the file is then left as it is. A write that fails while the render runs is a notice, and
