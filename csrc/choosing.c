@@ -142,7 +142,7 @@ bool sf_rounds_begin_lap(sf_rounds *r) {
     if (!r->in_lap) return false; /* after the last sample there is no look */
     if (r->second)
         r->look = least_planned(r);
-    else if (!chosen || r->goal)
+    else if (!chosen)
         r->look = sf_stop_next_look(&r->options, r->from);
     r->to = r->from;
     r->lap = r->second ? (sf_lap){0, 0} : sf_stop_lap(&r->options, r->look);

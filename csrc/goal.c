@@ -54,30 +54,11 @@ void sf_goal_destroy(sf_goal *goal) {
     free(goal);
 }
 
-/* The mean of the errors of the 3 x 3 pixels around at this pixel's look, as half-widths are of their mean
- * variance. */
-static float error_around(const sf_film *film, uint32_t x, uint32_t y) {
-    const sf_film_pixel *centre = film->pixels + (size_t)y * film->width + x;
-    if (film->options.stop != SF_STOP_DYADIC || !centre->look) return (float)sf_stop_relative_error(film, centre);
-    double decay = (double)sf_stop_decay(film, x, y), sum = 0, count = 0;
-    for (uint32_t v = y ? y - 1 : 0; v <= y + 1 && v < film->height; ++v)
-        for (uint32_t u = x ? x - 1 : 0; u <= x + 1 && u < film->width; ++u) {
-            const sf_film_pixel *pixel = film->pixels + (size_t)v * film->width + u;
-            if (!pixel->look) continue;
-            double error = sf_stop_relative_error(film, pixel);
-            for (int k = pixel->look; k > centre->look; --k) error *= decay;
-            for (int k = pixel->look; k < centre->look; ++k) error /= decay;
-            sum += error;
-            ++count;
-        }
-    return (float)(sum / count);
-}
-
 void sf_goal_take_note(sf_rounds *r, uint32_t x, uint32_t y) {
     size_t i = (size_t)y * r->film->width + x;
     const sf_film_pixel *pixel = r->film->pixels + i;
     r->goal->notes[i] = (sf_goal_note){.error = (float)sf_stop_relative_error(r->film, pixel),
-                                       .around = error_around(r->film, x, y),
+                                       .around = sf_stop_relative_error_around(r->film, x, y),
                                        .taken = (uint32_t)sf_film_taken(pixel)};
 }
 
@@ -230,6 +211,7 @@ bool sf_goal_choose(sf_rounds *r) {
     r->beyond = beyond;
     if (!beyond) return false;
     r->from = least;
+    r->look = sf_stop_next_look(&r->options, least);
     sf_pool_run(r->pool, r->cell_rows, choose_row, sf_rounds_wake, r);
     return true;
 }

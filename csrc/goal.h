@@ -37,7 +37,8 @@ void sf_goal_take_note(struct sf_rounds *r, uint32_t x, uint32_t y);
 /* The notes, by pixel of the film; NULL where there is no goal. */
 sf_goal_note *sf_goal_notes(sf_goal *goal);
 
-/* Chooses the pixels of the next lap, and where it begins: r->active, r->from. False: the goal is
+/* Chooses the pixels of the next lap, and where it begins and looks: r->active,
+ * r->from, r->look. False: the goal is
  * reached, or no pixel may have more samples. */
 bool sf_goal_choose(struct sf_rounds *r);
 

@@ -102,10 +102,10 @@ static bool merge_pixel(const sf_film *const *films, size_t count, uint32_t x, u
     for (size_t i = 0; i < count; ++i) {
         const sf_film_pixel *pixel = pixel_at(films[i], x, y);
         if (!pixel) continue;
-        double weighted = (double)pixel->moments.count * (double)pixel->half_width;
         if (pixel->moments.count) {
+            double n = (double)pixel->moments.count, weighted = n * (double)pixel->half_width;
             square += weighted * weighted;
-            variance += (double)pixel->moments.count * (double)pixel->moments.count * (double)pixel->variance;
+            variance += n * n * (double)pixel->variance;
             looked_at += pixel->look > 0;
             ++sampled;
         }
@@ -122,8 +122,9 @@ static bool merge_pixel(const sf_film *const *films, size_t count, uint32_t x, u
         out->reason = reason;
     }
     if (sampled > 1) {
-        out->half_width = (float)(sqrt(square) / (double)out->moments.count);
-        out->variance = (float)(variance / (double)out->moments.count / (double)out->moments.count);
+        double n = (double)out->moments.count;
+        out->half_width = (float)(sqrt(square) / n);
+        out->variance = (float)(variance / n / n);
         if (looked_at < sampled) out->look = 0;
     }
     return found > 0;

@@ -136,22 +136,6 @@ static bool decide_second(const sf_rounds *r, sf_film_pixel *pixel, size_t state
     return true;
 }
 
-/* What is told of a closed pixel. */
-static uint8_t told_reason(const sf_film_pixel *pixel, sf_stop_reason reason) {
-    bool doubted = pixel->doubt && (reason == SF_STOP_MAX_SAMPLES || reason == SF_STOP_OUT_OF_TIME);
-    return (uint8_t)(pixel->moments.nonfinite || doubted ? SF_STOP_SUSPICIOUS : reason);
-}
-
-/* Under a goal of the whole picture no pixel is met before that is. */
-static bool decide_goal(sf_rounds *r, uint32_t x, uint32_t y, bool full, size_t state) {
-    sf_film_pixel *pixel = r->film->pixels + (size_t)y * r->film->width + x;
-    sf_goal_take_note(r, x, y);
-    if (!full && state == SF_RUNNING) return false;
-    bool met = state == SF_SPENT && sf_goal_is_reached(r->goal);
-    pixel->reason = told_reason(pixel, met ? SF_STOP_MET : unmet_reason(r, full, state));
-    return true;
-}
-
 /* Whether the pixel is done, and why. */
 static bool decide_pixel(sf_rounds *r, uint32_t x, uint32_t y, size_t state) {
     sf_film_pixel *pixel = r->film->pixels + (size_t)y * r->film->width + x;
@@ -164,11 +148,16 @@ static bool decide_pixel(sf_rounds *r, uint32_t x, uint32_t y, size_t state) {
     if (o->spp && !full && state == SF_RUNNING) return false;          /* nothing to tell before the end */
     if (sf_film_taken(pixel) == 0 && state != SF_RUNNING) return true; /* not a page of it is touched; see close_all */
     pixel->half_width = sf_stop_half_width(r->film, o, x, y);
-    if (r->goal) return decide_goal(r, x, y, full, state);
     bool met = !o->spp && summary->tolerance >= 0 && sf_film_taken(pixel) >= o->min_spp &&
                (double)pixel->half_width <= summary->tolerance;
+    if (r->goal) { /* no pixel is met before the whole picture is */
+        sf_goal_take_note(r, x, y);
+        met = state == SF_SPENT && sf_goal_is_reached(r->goal);
+    }
     if (!met && !full && state == SF_RUNNING) return false;
-    pixel->reason = told_reason(pixel, met ? SF_STOP_MET : unmet_reason(r, full, state));
+    sf_stop_reason reason = met ? SF_STOP_MET : unmet_reason(r, full, state);
+    bool doubted = pixel->doubt && (reason == SF_STOP_MAX_SAMPLES || reason == SF_STOP_OUT_OF_TIME);
+    pixel->reason = (uint8_t)(pixel->moments.nonfinite || doubted ? SF_STOP_SUSPICIOUS : reason);
     return true;
 }
 

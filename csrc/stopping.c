@@ -213,16 +213,17 @@ static double relative_weight(const sf_film_pixel *pixel) {
     return (pair + (square[0] + square[1]) * square[2]) / (3 * pair * square[2]);
 }
 
-/* The mean over the 3 x 3 pixels around of the variance at this pixel's look; those that stopped
- * at another look are carried there by the decay. */
-static float pooled_variance(const sf_film *film, uint32_t x, uint32_t y) {
+/* The mean over the 3 x 3 pixels around of the variance at this pixel's look, or of the relative one;
+ * those that stopped at another look are carried there by the decay. */
+static inline float pooled_variance(const sf_film *film, uint32_t x, uint32_t y, bool relative) {
     const sf_film_pixel *centre = film->pixels + (size_t)y * film->width + x;
     float decay = film->decay[pool_of(film, x, y)], sum = 0, count = 0;
     for (uint32_t v = y ? y - 1 : 0; v <= y + 1 && v < film->height; ++v)
         for (uint32_t u = x ? x - 1 : 0; u <= x + 1 && u < film->width; ++u) {
             const sf_film_pixel *pixel = film->pixels + (size_t)v * film->width + u;
             if (!pixel->look) continue;
-            sum += pixel->variance * power_of(decay, (int)pixel->look - (int)centre->look);
+            float variance = pixel->variance * power_of(decay, (int)pixel->look - (int)centre->look);
+            sum += relative ? variance * (float)relative_weight(pixel) : variance;
             ++count;
         }
     return sum / count;
@@ -272,7 +273,7 @@ float sf_stop_half_width(const sf_film *film, const sf_render_options *o, uint32
     if (o->stop == SF_STOP_REPLICATES && sf_stop_is_look(o, (uint32_t)sf_film_taken(pixel)))
         return replicates_half_width(film, pixel, factor);
     if (o->stop != SF_STOP_DYADIC || !pixel->look) return sf_film_half_width(pixel, factor);
-    double half_width = factor * sqrt((double)pooled_variance(film, x, y));
+    double half_width = factor * sqrt((double)pooled_variance(film, x, y, false));
     double least = unseen(film, o, (double)(SF_LANES << pixel->look));
     return (float)(half_width > least ? half_width : least);
 }
@@ -283,6 +284,12 @@ double sf_stop_relative_error(const sf_film *film, const sf_film_pixel *pixel) {
         return SAFETY * (double)pixel->variance * relative_weight(pixel);
     double error = (double)pixel->half_width / sf_stop_factor(film, &film->options, pixel);
     return error * error * relative_weight(pixel);
+}
+
+float sf_stop_relative_error_around(const sf_film *film, uint32_t x, uint32_t y) {
+    const sf_film_pixel *pixel = film->pixels + (size_t)y * film->width + x;
+    if (film->options.stop != SF_STOP_DYADIC || !pixel->look) return (float)sf_stop_relative_error(film, pixel);
+    return (float)SAFETY * pooled_variance(film, x, y, true);
 }
 
 float sf_stop_decay(const sf_film *film, uint32_t x, uint32_t y) {

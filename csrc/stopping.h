@@ -97,6 +97,9 @@ double sf_stop_factor(const sf_film *film, const sf_render_options *options, con
  * square of each channel and 0.01, averaged. 0 where no sample differed; infinity below two samples. */
 double sf_stop_relative_error(const sf_film *film, const sf_film_pixel *pixel);
 
+/* The same, under dyadic pooled over the 3 x 3 pixels around (x, y) of the film, as half-widths are. */
+float sf_stop_relative_error_around(const sf_film *film, uint32_t x, uint32_t y);
+
 /* The factor by which variance falls as samples double, around pixel (x, y) of the film: 2 to 2^2.5. */
 float sf_stop_decay(const sf_film *film, uint32_t x, uint32_t y);
 

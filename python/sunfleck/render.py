@@ -132,12 +132,11 @@ class Summary:
             met = f"{_percent(self.share_met)} of pixels met {self.tolerance / unit:.3g} {confidence}"
             return f"{met}{early}; {worst}"
         early = early.replace("100 % ", "")
+        samples = f"{self.samples / self.pixels:.4g} samples a pixel{early}"
         if self.goal > 0:
             reached = "reached" if self.relmse <= self.goal else "not reached"
-            samples = f"{self.samples / self.pixels:.4g} samples a pixel{early}"
             relmse = f"relMSE {self.relmse:.3g}, {reached}: {self.goal:.3g} was asked for"
             return f"{relmse}; {samples}; {worst} {confidence}"
-        samples = f"{self.samples / self.pixels:.4g} samples a pixel{early}"
         return f"{samples}; half-width {confidence}: mean {self.mean_half_width:.3g}, {worst}"
 
     def _share(self, reason: str) -> float:
@@ -317,15 +316,6 @@ def _tolerance(value: float | Tolerance | None) -> tuple[float, float]:
     return value.relative, value.absolute
 
 
-def _goal(value: float | None) -> float:
-    if value is None:
-        return 0.0
-    goal = number("relmse", value)
-    if goal == 0:
-        raise ValueError("relmse is 0, which no number of samples reaches; give one above 0")
-    return goal
-
-
 def _count(name: str, value: int | None, bits: int = 32) -> int:
     """A count that may be None, which is C's 0; so that 0 itself must be refused here."""
     if value is None:
@@ -336,13 +326,14 @@ def _count(name: str, value: int | None, bits: int = 32) -> int:
     return count
 
 
-def _seconds(value: float | None) -> float:
+def _above_zero(name: str, value: float | None, refusal: str) -> float:
+    """A number that may be None, which is C's 0; so that 0 itself must be refused here, in these words."""
     if value is None:
         return 0.0
-    seconds = number("seconds", value)
-    if seconds == 0:
-        raise ValueError("seconds is 0; give a time above 0, or None for no limit")
-    return seconds
+    given = number(name, value)
+    if given == 0:
+        raise ValueError(f"{name} is 0{refusal}")
+    return given
 
 
 def _crop(value: Sequence[int] | None) -> tuple[int, int, int, int]:
@@ -579,12 +570,12 @@ def render(
         "start": integer("start", start, bits=32),
         "relative_tolerance": relative,
         "absolute_tolerance": absolute,
-        "relmse": _goal(relmse),
+        "relmse": _above_zero("relmse", relmse, ", which no number of samples reaches; give one above 0"),
         "confidence": number("confidence", confidence),
         "min_spp": integer("min_spp", min_spp, bits=32),
         "max_spp": integer("max_spp", max_spp, bits=32),
         "samples": _count("samples", samples, bits=64),
-        "seconds": _seconds(seconds),
+        "seconds": _above_zero("seconds", seconds, "; give a time above 0, or None for no limit"),
         "pattern": text("pattern", pattern),
         "pixel_filter": text("pixel_filter", pixel_filter),
         "stop": text("stop", stop),

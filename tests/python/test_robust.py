@@ -69,16 +69,24 @@ def reference() -> sf.Image:
     return sf.render(room(1, 0), 48, 48, spp=128, seed=1)
 
 
+@pytest.fixture(scope="module")
+def long_reference() -> sf.Image:
+    return sf.render(room(1, 0), 48, 48, spp=1024, seed=1)
+
+
 @pytest.mark.parametrize(("scale", "move"), [(1e-4, 0), (1e6, 0), (1, 1e5), (1, -1e5)])
-def test_scaled_and_moved_scenes_are_the_same_picture(reference: sf.Image, scale: float, move: float) -> None:
-    """With the same seed only paths that graze an edge differ; with another the mean does, by 3e-3."""
+def test_scaled_and_moved_scenes_are_the_same_picture(
+    reference: sf.Image, long_reference: sf.Image, scale: float, move: float
+) -> None:
+    """With the same seed only paths that graze an edge differ: less than the noise, by far."""
     image = sf.render(room(scale, move), 48, 48, spp=128, seed=1)
     error = np.hypot(image.half_width.astype(float), reference.half_width)
     difference = np.abs(image.color - reference.color).mean(axis=2)
     assert (difference <= error).mean() > 0.99
     assert image.color.mean() == pytest.approx(reference.color.mean(), rel=1e-3)
-    other = sf.render(room(scale, move), 48, 48, spp=128, seed=2)
-    assert other.color.mean() == pytest.approx(reference.color.mean(), rel=1.2e-2)
+    # Independent samples: at 1,024 a pixel two means differ by 9e-4, one standard deviation.
+    other = sf.render(room(scale, move), 48, 48, spp=1024, seed=2)
+    assert other.color.mean() == pytest.approx(long_reference.color.mean(), rel=5e-3)
 
 
 @pytest.mark.parametrize("triangle", [False, True])
