@@ -15,23 +15,17 @@ from __future__ import annotations
 
 import argparse
 import re
-import shutil
 import statistics
-import subprocess
-import sys
 from pathlib import Path
 
 from measure import ROOT, describe_build, describe_machine, state
+from variants import build, run
 
 WORK = ROOT / "build/modules"
 MODULES = ("fog", "sky", "round", "material", "light_shape", "light_tree", "aov")
-SOURCES = ("CMakeLists.txt", "LICENSE", "NOTICE", "README.md", "cmake", "csrc", "pyproject.toml", "python")
 TABLE = re.compile(r"^const (\w+) SF_AT_LEVEL\(\1\) = ", re.MULTILINE)
 TIMED = """
-import sys, time
-sys.path.insert(0, sys.argv[1])
-import sunfleck as sf
-assert sf.__file__.startswith(sys.argv[1]), sf.__file__
+import time
 scene, seconds = sf.scenes.penumbra(), []
 for seed in range(9):
     start = time.perf_counter()
@@ -41,38 +35,23 @@ print(sorted(seconds)[4])
 """
 
 
-def copy_source(empty: bool) -> Path:
-    tree = WORK / ("without" if empty else "with")
-    shutil.rmtree(tree, ignore_errors=True)
-    tree.mkdir(parents=True)
-    for name in SOURCES:
-        (shutil.copytree if (ROOT / name).is_dir() else shutil.copy)(ROOT / name, tree / name)
-    for module in MODULES if empty else ():
-        path = tree / f"csrc/{module}_kernels.c"
+def empty(folder: Path) -> None:
+    for module in MODULES:
+        path = folder / f"csrc/{module}_kernels.c"
         table = TABLE.search(path.read_text())
         assert table, path
         path.write_text(f'#include "{module}_kernels.h"\n\n{table[0]}{{0}};\n')
-    return tree
-
-
-def build(empty: bool) -> Path:
-    tree = copy_source(empty)
-    target = tree / "installed"
-    pip = [sys.executable, "-m", "pip", "install", "-q", "--no-deps", "-C", f"build-dir={tree / 'build'}"]
-    subprocess.run([*pip, "-t", str(target), str(tree)], check=True)
-    return target
 
 
 def seconds(installed: Path) -> float:
-    line = [sys.executable, "-c", TIMED, str(installed)]
-    return float(subprocess.run(line, cwd=WORK, check=True, capture_output=True, text=True).stdout)
+    return float(str(run(installed, TIMED)))
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rounds", type=int, default=9)
     given = parser.parse_args()
-    full, reduced = build(False), build(True)
+    full, reduced = build(WORK / "with"), build(WORK / "without", empty)
     print(describe_machine())
     print(describe_build())
     ratios, times = [], []

@@ -13,6 +13,7 @@
 #include "light_kernels.h"
 #include "light_shape_kernels.h"
 #include "material_kernels.h"
+#include "order_kernels.h"
 #include "round_kernels.h"
 #include "shade_kernels.h"
 #include "sky_kernels.h"
@@ -23,10 +24,12 @@ typedef struct run {
     const sf_render_context *context;
     const sf_coordinates_kernels *coordinates;
     const sf_shade_kernels *shade;
+    const sf_order_kernels *order;
     const sf_light_kernels *light;
     const sf_light_shape_kernels *shapes;
     const sf_material_kernels *material; /* NULL without SF_STAGE_SCATTER */
     bool special;                        /* light is sampled, or weighted, in more ways than the plainest */
+    bool sorts;                          /* surface rays are moved to others like them */
     uint32_t group;                      /* the plan's next group of dimensions */
 } run;
 
@@ -66,7 +69,6 @@ static void optional_coordinates(run *r, sf_dimension_use use, uint32_t bounce, 
 /* The nearest hits, with the normals of what is round. */
 static void trace_nearest(run *r, uint32_t packets, const uint32_t *active, sf_coherence coherence) {
     const sf_scene *scene = r->context->scene;
-    begin(r, coherence == SF_COHERENT ? SF_WORK_CAMERA_RAYS : SF_WORK_SURFACE_RAYS);
     sf_trace_nearest(r->batch, scene, packets, active, coherence);
     if (has(r, SF_STAGE_ROUND)) sf_round_kernels_at(r->context->isa)->face(r->batch, scene, packets * SF_LANES);
 }
@@ -89,6 +91,7 @@ static void trace_camera(run *r) {
     begin(r, SF_WORK_CAMERA);
     sf_camera_kernels_at(r->context->isa)
         ->camera(b, &r->context->camera, r->context->filter, lens ? b->coordinate_by_ray : NULL);
+    begin(r, SF_WORK_CAMERA_RAYS);
     trace_nearest(r, paths / SF_LANES, active, SF_COHERENT);
     begin(r, SF_WORK_VERTICES);
     if (b->hit_sums) sf_aov_gather(b, r->context);
@@ -113,7 +116,8 @@ static void connect_lights(run *r, uint32_t bounce, uint32_t count) {
     } else
         (r->special ? r->shapes->light : r->light->light)(b, scene, count, weigh);
     if (has(r, SF_STAGE_FOG)) sf_fog_kernels_at(r->context->isa)->dim(b, scene, count);
-    uint32_t rays = r->light->sort_shadow_rays(b, count);
+    bool sorted = r->sorts && bounce > 1; /* by the rays that found the vertices */
+    uint32_t rays = (sorted ? r->order->list_alive : r->order->sort_shadow_rays)(b, count);
     begin(r, SF_WORK_SHADOW_RAYS);
     sf_trace_shadow(b, scene, r->material ? b->origin : b->point, rays);
     begin(r, SF_WORK_LIGHT);
@@ -140,7 +144,7 @@ static uint32_t scatter(run *r, uint32_t bounce, uint32_t count) {
     const sf_scene *scene = r->context->scene;
     if (bounce == scene->plan.max_bounces && !has(r, SF_STAGE_LAST_SURFACE)) {
         r->material->end_diffuse(b, count);
-        count = r->shade->compact(b, count);
+        count = r->order->compact(b, count);
         r->material->compact(b, count);
         r->material->sort(b, scene, count);
     }
@@ -163,13 +167,15 @@ static uint32_t trace_surface(run *r, uint32_t bounce, uint32_t count) {
         begin(r, SF_WORK_SURFACE);
         r->shade->surface(b, count);
     }
+    begin(r, SF_WORK_SURFACE_RAYS);
+    if (r->sorts) count = r->order->sort_surface_rays(b, r->context->scene, count);
     uint32_t packets = (count + SF_LANES - 1) / SF_LANES;
     if (packets == 0) return 0;
     for (uint32_t p = 0; p < packets; ++p) active[p] = 0xffffu;
     if (count % SF_LANES) active[packets - 1] = (1u << count % SF_LANES) - 1;
-    if (r->material)
+    if (r->material && !r->sorts)
         for (uint32_t i = 0; i < count; ++i) active[i / SF_LANES] &= ~((b->alive[i] ^ 1u) << i % SF_LANES);
-    trace_nearest(r, packets, active, SF_INCOHERENT);
+    trace_nearest(r, packets, active, r->sorts ? SF_COHERENT : SF_INCOHERENT);
     begin(r, SF_WORK_SURFACE);
     if (has(r, SF_STAGE_FOG)) drift(r, count);
     add_found(r, count);
@@ -195,7 +201,7 @@ static void place_vertices(run *r, uint32_t bounce, uint32_t count) {
 
 /* Leaves the vertices where the path goes on, moved together. */
 static uint32_t compact(run *r, uint32_t count) {
-    count = r->shade->compact(r->batch, count);
+    count = r->order->compact(r->batch, count);
     if (r->material) {
         r->material->keep(r->batch, r->context->scene, count);
         r->material->sort(r->batch, r->context->scene, count);
@@ -208,11 +214,14 @@ void sf_batch_run(sf_batch *batch, const sf_render_context *context) {
              .context = context,
              .coordinates = sf_coordinates_kernels_at(context->isa),
              .shade = sf_shade_kernels_at(context->isa),
+             .order = sf_order_kernels_at(context->isa),
              .light = sf_light_kernels_at(context->isa),
              .shapes = sf_light_shape_kernels_at(context->isa)};
     if (has(&r, SF_STAGE_SCATTER)) r.material = sf_material_kernels_at(context->isa);
     const sf_plan *plan = &context->scene->plan;
     r.special = context->scene->lights.special || context->scene->light_sampling != SF_LIGHT_SAMPLING_BOTH;
+    r.sorts = context->scene->few;
+    batch->in_place = true;
     trace_camera(&r);
     bool light = has(&r, SF_STAGE_LIGHT);
     uint32_t count = sf_batch_paths(batch);

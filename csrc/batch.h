@@ -66,9 +66,9 @@ typedef struct sf_batch {
     float to_light[3][SF_PATHS];     /* from the vertex, not normalized */
     float contribution[3][SF_PATHS]; /* if nothing is in between */
     uint32_t bin[SF_PATHS];          /* of the shadow ray: packets are formed within bins */
-    uint32_t order[SF_PATHS];        /* a permutation of rays */
+    uint32_t order[SF_PATHS];        /* a permutation of rays, or a list of some */
     float arrives[SF_PATHS];         /* 1 where nothing is in between */
-    float gather[SF_PATHS];          /* scratch of compaction */
+    float gather[SF_PATHS];          /* scratch of moving */
 
     float radiance[3][SF_PATHS]; /* by path */
     float covered[SF_PATHS];     /* by path: 1 where the camera ray hit a surface */
@@ -76,6 +76,7 @@ typedef struct sf_batch {
     sf_block blocks[SF_BLOCKS];
     sf_block_statistics statistics[SF_BLOCKS];
     uint32_t block_count;
+    bool in_place;                                 /* path[i] = i: all paths live, and none was moved */
     uint32_t width, first_sample;                  /* of a block: how many lanes it has, and of which samples */
     uint32_t negative[SF_BLOCKS];                  /* bit l: the filter is negative at lane l of the block */
     sf_vector_moments negative_moments[SF_BLOCKS]; /* of those samples; `statistics` then has the others */

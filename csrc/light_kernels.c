@@ -10,8 +10,6 @@
 #include "rays.h"
 #include "sunfleck/mapping.h"
 
-#define SHADOW_BINS 64 /* 4 quarters of a cell x 4 x 4 cells of the light */
-
 /* The pieces that the 16 rays of a packet were given, field by field. */
 typedef struct light_lanes {
     SF_ALIGNED(float) field[SF_LIGHT_SAMPLED][SF_LANES];
@@ -88,25 +86,14 @@ static void light(sf_batch *b, const sf_scene *scene, uint32_t count, bool weigh
     }
 }
 
-/* A counting sort without a branch: the rays that have no contribution get a bin of their own, the last. */
-static uint32_t sort_shadow_rays(sf_batch *b, uint32_t count) {
-    uint32_t place[SHADOW_BINS + 2] = {0};
-    for (uint32_t i = 0; i < count; ++i) b->bin[i] = b->alive[i] ? b->bin[i] : SHADOW_BINS;
-    for (uint32_t i = 0; i < count; ++i) ++place[b->bin[i] + 1];
-    for (uint32_t bin = 0; bin < SHADOW_BINS; ++bin) place[bin + 1] += place[bin];
-    for (uint32_t i = 0; i < count; ++i) b->order[place[b->bin[i]]++] = i;
-    return place[SHADOW_BINS - 1];
-}
-
 /* A ray that was not alive was not traced, and its contribution may be no number. */
 static inline float arriving(const sf_batch *b, int c, uint32_t i) {
     return b->alive[i] && b->arrives[i] > 0 ? b->contribution[c][i] : 0.0f;
 }
 
 static void add_light(sf_batch *b, uint32_t count) {
-    bool in_place = count == sf_batch_paths(b); /* all paths live: path[i] = i */
     for (int c = 0; c < 3; ++c)
-        if (in_place)
+        if (b->in_place)
             for (uint32_t i = 0; i < count; ++i) b->radiance[c][i] += arriving(b, c, i);
         else {
             SF_INDEPENDENT
@@ -114,4 +101,4 @@ static void add_light(sf_batch *b, uint32_t count) {
         }
 }
 
-const sf_light_kernels SF_AT_LEVEL(sf_light_kernels) = {light, sort_shadow_rays, add_light};
+const sf_light_kernels SF_AT_LEVEL(sf_light_kernels) = {light, add_light};

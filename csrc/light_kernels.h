@@ -15,8 +15,6 @@ typedef struct sf_light_kernels {
      * `weigh`: surface rays may find the same light, so take the light's share only. */
     void (*light)(sf_batch *batch, const sf_scene *scene, uint32_t count, bool weigh);
 
-    /* Lists the rays that have a contribution in `order`, bin by bin. Returns how many. */
-    uint32_t (*sort_shadow_rays)(sf_batch *batch, uint32_t count);
     /* Adds the contributions that arrive to the radiance of their paths. */
     void (*add_light)(sf_batch *batch, uint32_t count);
 } sf_light_kernels;

@@ -18,6 +18,8 @@ static inline uint32_t sf_choose_piece(const sf_light_table *lights, uint32_t be
     return place - (float)column < lights->pieces[row][SF_LIGHT_KEEP] ? row : lights->alias[row];
 }
 
+#define SF_SHADOW_BINS 64 /* 4 quarters of a cell x 4 x 4 cells of the light */
+
 /* The quarter of the cell and the cell of the light: rays of a bin start close to each other and
  * end close to each other. */
 static inline uint32_t sf_shadow_bin(const sf_batch *b, uint32_t ray, float s, float t) {

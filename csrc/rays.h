@@ -24,9 +24,9 @@ static inline float sf_lift_on_sphere(const sf_round *round, float lift) {
     return own > lift ? own : lift;
 }
 
-/* The coordinates of the living paths; they are where they belong while all of them live. */
+/* The coordinates of the rays' paths. */
 static inline float (*sf_coordinates_by_ray(sf_batch *b, uint32_t count, int coordinates)) [SF_PATHS] {
-    if (count == sf_batch_paths(b)) return b->coordinate;
+    if (b->in_place) return b->coordinate;
     for (int c = 0; c < coordinates; ++c)
         for (uint32_t i = 0; i < count; ++i) b->coordinate_by_ray[c][i] = b->coordinate[c][b->path[i]];
     return b->coordinate_by_ray;

@@ -184,6 +184,8 @@ struct sf_scene {
     float back;         /* 1 where robust, else 0: of the lift, how far a hit is moved back along its ray */
     float shift[3];     /* what was subtracted from all coordinates; see recentre.c */
     size_t moved_count; /* meshes that it was subtracted from */
+    bool few;           /* so few primitives that rays are sorted for their packets */
+    float middle[3];    /* of the bounds, as rays see them */
     float normal_scale; /* brings Embree's normals, of the length of areas, to the order of 1 */
     sf_scene_info info;
     sf_mesh_table mesh_table;

@@ -159,33 +159,6 @@ static void roulette(sf_batch *b, uint32_t count) {
     }
 }
 
-static uint32_t list_alive(sf_batch *b, uint32_t count) {
-    uint32_t kept = 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        b->order[kept] = i;
-        kept += b->alive[i];
-    }
-    return kept;
-}
-
-/* order[i] >= i, so that the list can be moved to the front within its own array. */
-static void move_floats(sf_batch *b, float *SF_RESTRICT array, uint32_t kept) {
-    for (uint32_t i = 0; i < kept; ++i) b->gather[i] = array[b->order[i]];
-    memcpy(array, b->gather, kept * sizeof *array);
-}
-
-static uint32_t compact(sf_batch *b, uint32_t count) {
-    uint32_t kept = list_alive(b, count);
-    if (kept == count) return kept;
-    for (int c = 0; c < 3; ++c) {
-        move_floats(b, b->point[c], kept);
-        move_floats(b, b->normal[c], kept);
-        move_floats(b, b->throughput[c], kept);
-    }
-    for (uint32_t i = 0; i < kept; ++i) b->path[i] = b->path[b->order[i]];
-    return kept;
-}
-
 /* ---- surface ---- */
 
 static void surface(sf_batch *b, uint32_t count) {
@@ -204,5 +177,5 @@ static void surface(sf_batch *b, uint32_t count) {
     }
 }
 
-const sf_shade_kernels SF_AT_LEVEL(sf_shade_kernels) = {first_radiance, later_radiance, first_vertex, later_vertex,
-                                                        roulette,       compact,        surface};
+const sf_shade_kernels SF_AT_LEVEL(sf_shade_kernels) = {first_radiance, later_radiance, first_vertex,
+                                                        later_vertex,   roulette,       surface};

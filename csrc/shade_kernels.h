@@ -26,9 +26,6 @@ typedef struct sf_shade_kernels {
      * throughput, and divides that of the others by it. */
     void (*roulette)(sf_batch *batch, uint32_t count);
 
-    /* Lists the living rays in `order`, then moves their vertices together. Returns how many. */
-    uint32_t (*compact)(sf_batch *batch, uint32_t count);
-
     /* New rays off the surfaces, from coordinate[0 .. 1], by the cosine. */
     void (*surface)(sf_batch *batch, uint32_t count);
 } sf_shade_kernels;

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "order_kernels.h"
+
+#include <string.h>
+
+#include "light_lanes.h"
+#include "rays.h"
+
+#define SURFACE_BINS 256 /* 8 octants of directions x 8 of the scene x 4 of slopes */
+
+static uint32_t list_alive(sf_batch *b, uint32_t count) {
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        b->order[kept] = i;
+        kept += b->alive[i];
+    }
+    return kept;
+}
+
+static void move_floats(sf_batch *b, float *SF_RESTRICT array, uint32_t count) {
+    for (uint32_t i = 0; i < count; ++i) b->gather[i] = array[b->order[i]];
+    memcpy(array, b->gather, count * sizeof *array);
+}
+
+static uint32_t compact(sf_batch *b, uint32_t count) {
+    uint32_t kept = list_alive(b, count);
+    if (kept == count) return kept;
+    for (int c = 0; c < 3; ++c) {
+        move_floats(b, b->point[c], kept);
+        move_floats(b, b->normal[c], kept);
+        move_floats(b, b->throughput[c], kept);
+    }
+    for (uint32_t i = 0; i < kept; ++i) b->path[i] = b->path[b->order[i]]; /* order[i] >= i */
+    b->in_place = false;
+    return kept;
+}
+
+/* Lists the rays in `order` by their bins, a counting sort without a branch; `place` has bins + 1 zeros.
+ * Returns how many are not in the last bin. */
+static inline uint32_t list_by_bin(sf_batch *b, uint32_t count, uint32_t bins, uint32_t *SF_RESTRICT place) {
+    for (uint32_t i = 0; i < count; ++i) ++place[b->bin[i] + 1];
+    for (uint32_t bin = 0; bin < bins; ++bin) place[bin + 1] += place[bin];
+    for (uint32_t i = 0; i < count; ++i) b->order[place[b->bin[i]]++] = i;
+    return place[bins - 2];
+}
+
+/* The rays that have no contribution get a bin of their own, the last. */
+static uint32_t sort_shadow_rays(sf_batch *b, uint32_t count) {
+    uint32_t place[SF_SHADOW_BINS + 2] = {0};
+    for (uint32_t i = 0; i < count; ++i) b->bin[i] = b->alive[i] ? b->bin[i] : SF_SHADOW_BINS;
+    return list_by_bin(b, count, SF_SHADOW_BINS + 1, place);
+}
+
+/* First by the octant of the direction, as Embree traces the rays of a packet that lie in one together;
+ * then by the octant of the scene that they start in; then by which components of the direction are large. */
+static void bin_surface_rays(sf_batch *b, const float *middle, uint32_t count) {
+    for (uint32_t i = 0; i < sf_whole_packets(count); ++i) {
+        float x = b->direction[0][i], y = b->direction[1][i], z = b->direction[2][i];
+        uint32_t octant = (uint32_t)(x < 0) << 2 | (uint32_t)(y < 0) << 1 | (uint32_t)(z < 0);
+        uint32_t start = (uint32_t)(b->point[0][i] < middle[0]) << 2 | (uint32_t)(b->point[1][i] < middle[1]) << 1 |
+                         (uint32_t)(b->point[2][i] < middle[2]);
+        uint32_t slope = (uint32_t)(x * x > 1.0f / 3) << 1 | (uint32_t)(y * y > 1.0f / 3);
+        b->bin[i] = octant << 5 | start << 2 | slope;
+    }
+}
+
+static uint32_t sort_surface_rays(sf_batch *b, const sf_scene *scene, uint32_t count) {
+    uint32_t place[SURFACE_BINS + 2] = {0};
+    bin_surface_rays(b, scene->middle, count);
+    if (sf_plan_has(&scene->plan, SF_STAGE_SCATTER)) /* else `alive` is of the shadow rays */
+        for (uint32_t i = 0; i < count; ++i) b->bin[i] = b->alive[i] ? b->bin[i] : SURFACE_BINS;
+    count = list_by_bin(b, count, SURFACE_BINS + 1, place);
+    for (int c = 0; c < 3; ++c) {
+        move_floats(b, b->origin[c], count);
+        move_floats(b, b->direction[c], count);
+        move_floats(b, b->throughput[c], count);
+    }
+    move_floats(b, b->pdf, count);
+    for (uint32_t i = 0; i < count; ++i) b->bin[i] = b->path[b->order[i]];
+    memcpy(b->path, b->bin, count * sizeof *b->path);
+    b->in_place = false;
+    return count;
+}
+
+const sf_order_kernels SF_AT_LEVEL(sf_order_kernels) = {list_alive, compact, sort_shadow_rays, sort_surface_rays};
