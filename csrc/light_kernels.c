@@ -92,13 +92,14 @@ static inline float arriving(const sf_batch *b, int c, uint32_t i) {
 }
 
 static void add_light(sf_batch *b, uint32_t count) {
-    for (int c = 0; c < 3; ++c)
-        if (b->in_place)
+    if (b->in_place)
+        for (int c = 0; c < 3; ++c)
             for (uint32_t i = 0; i < count; ++i) b->radiance[c][i] += arriving(b, c, i);
-        else {
-            SF_INDEPENDENT
-            for (uint32_t i = 0; i < count; ++i) b->radiance[c][b->path[i]] += arriving(b, c, i);
-        }
+    else {
+        for (int c = 0; c < 3; ++c)
+            for (uint32_t i = 0; i < count; ++i) b->contribution[c][i] = arriving(b, c, i);
+        sf_add_by_path(b, b->contribution, count);
+    }
 }
 
 const sf_light_kernels SF_AT_LEVEL(sf_light_kernels) = {light, add_light};

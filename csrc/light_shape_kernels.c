@@ -547,10 +547,7 @@ static void found(sf_batch *b, const sf_scene *scene, uint32_t count) {
 }
 
 static void add_found(sf_batch *b, uint32_t count) {
-    for (int c = 0; c < 3; ++c) {
-        SF_INDEPENDENT
-        for (uint32_t i = 0; i < count; ++i) b->radiance[c][b->path[i]] += b->emission[c][i];
-    }
+    sf_add_by_path(b, b->emission, count);
 }
 
 const sf_light_shape_kernels SF_AT_LEVEL(sf_light_shape_kernels) = {light, bare_light, found, add_found};

@@ -32,6 +32,16 @@ static inline float (*sf_coordinates_by_ray(sf_batch *b, uint32_t count, int coo
     return b->coordinate_by_ray;
 }
 
+/* Adds what the rays carry to the radiance of their paths: one by one, as processors are slow to scatter. */
+static inline void sf_add_by_path(sf_batch *b, float (*value)[SF_PATHS], uint32_t count) {
+    for (uint32_t i = 0; i < count; ++i) {
+        uint32_t path = b->path[i];
+        b->radiance[0][path] += value[0][i];
+        b->radiance[1][path] += value[1][i];
+        b->radiance[2][path] += value[2][i];
+    }
+}
+
 /* The power heuristic with exponent 2 (Veach 1997, eq. 9.11), pdf^2 / (pdf^2 + other^2), by the
  * ratio: the squares of densities by solid angle leave the floats' range in large scenes. */
 static inline float sf_power_weight(float pdf, float other) {

@@ -81,10 +81,7 @@ static void later_radiance(sf_batch *b, const sf_scene *scene, uint32_t count) {
         for (uint32_t i = 0; i < n; ++i)
             for (int c = 0; c < 3; ++c)
                 b->emission[c][i] = b->mesh[i] == miss ? b->throughput[c][i] * scene->background[c] : b->emission[c][i];
-    for (int c = 0; c < 3; ++c) {
-        SF_INDEPENDENT
-        for (uint32_t i = 0; i < count; ++i) b->radiance[c][b->path[i]] += b->emission[c][i];
-    }
+    sf_add_by_path(b, b->emission, count);
 }
 
 /* ---- vertices ---- */
