@@ -17,6 +17,7 @@
 #include "round_kernels.h"
 #include "shade_kernels.h"
 #include "sky_kernels.h"
+#include "trace_kernels.h"
 
 /* The batch's run in progress: who works on what. */
 typedef struct run {
@@ -25,6 +26,7 @@ typedef struct run {
     const sf_coordinates_kernels *coordinates;
     const sf_shade_kernels *shade;
     const sf_order_kernels *order;
+    const sf_trace_kernels *trace;
     const sf_light_kernels *light;
     const sf_light_shape_kernels *shapes;
     const sf_material_kernels *material; /* NULL without SF_STAGE_SCATTER */
@@ -69,7 +71,7 @@ static void optional_coordinates(run *r, sf_dimension_use use, uint32_t bounce, 
 /* The nearest hits, with the normals of what is round. */
 static void trace_nearest(run *r, uint32_t packets, const uint32_t *active, sf_coherence coherence) {
     const sf_scene *scene = r->context->scene;
-    sf_trace_nearest(r->batch, scene, packets, active, coherence);
+    r->trace->nearest(r->batch, scene, packets, active, coherence);
     if (has(r, SF_STAGE_ROUND)) sf_round_kernels_at(r->context->isa)->face(r->batch, scene, packets * SF_LANES);
 }
 
@@ -119,7 +121,7 @@ static void connect_lights(run *r, uint32_t bounce, uint32_t count) {
     bool sorted = r->sorts && bounce > 1; /* by the rays that found the vertices */
     uint32_t rays = (sorted ? r->order->list_alive : r->order->sort_shadow_rays)(b, count);
     begin(r, SF_WORK_SHADOW_RAYS);
-    sf_trace_shadow(b, scene, r->material ? b->origin : b->point, rays);
+    r->trace->shadow(b, scene, r->material ? b->origin : b->point, rays);
     begin(r, SF_WORK_LIGHT);
     r->light->add_light(b, count);
 }
@@ -215,6 +217,7 @@ void sf_batch_run(sf_batch *batch, const sf_render_context *context) {
              .coordinates = sf_coordinates_kernels_at(context->isa),
              .shade = sf_shade_kernels_at(context->isa),
              .order = sf_order_kernels_at(context->isa),
+             .trace = sf_trace_kernels_at(context->isa),
              .light = sf_light_kernels_at(context->isa),
              .shapes = sf_light_shape_kernels_at(context->isa)};
     if (has(&r, SF_STAGE_SCATTER)) r.material = sf_material_kernels_at(context->isa);

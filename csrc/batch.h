@@ -105,12 +105,4 @@ static inline uint32_t sf_batch_wanted(const sf_batch *b, uint32_t block) {
 /* Traces the paths of the batch's blocks: fills `statistics`. */
 void sf_batch_run(sf_batch *batch, const sf_render_context *context);
 
-/* trace.c: the nearest hits of the rays, packet by packet: of packet p those whose bit in
- * active[p] is set. Fills distance, hit_normal and mesh, which is the miss row for the others. */
-void sf_trace_nearest(sf_batch *batch, const sf_scene *scene, uint32_t packets, const uint32_t *active,
-                      sf_coherence coherence);
-
-/* trace.c: shadow rays order[0 .. count - 1] from `from` along `to_light`; fills `arrives`. */
-void sf_trace_shadow(sf_batch *batch, const sf_scene *scene, float (*from)[SF_PATHS], uint32_t count);
-
 #endif

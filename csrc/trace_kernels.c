@@ -4,12 +4,14 @@
 /* Rays to Embree and back, in packets of 16. The width and the flags of a stage never change, so
  * that Embree's answers do not depend on which rays share a packet. */
 
+#include "trace_kernels.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "batch.h"
+#include "rays.h"
 
-static void set_valid(int valid[SF_LANES], uint32_t bits) {
+static inline void set_valid(int valid[SF_LANES], uint32_t bits) {
     for (uint32_t l = 0; l < SF_LANES; ++l) valid[l] = -(int)(bits >> l & 1u);
 }
 
@@ -73,8 +75,8 @@ static void trace_placed(sf_batch *b, const sf_scene *scene, struct RTCRayHit16 
     }
 }
 
-void sf_trace_nearest(sf_batch *b, const sf_scene *scene, uint32_t packets, const uint32_t *active,
-                      sf_coherence coherence) {
+static void nearest(sf_batch *b, const sf_scene *scene, uint32_t packets, const uint32_t *active,
+                    sf_coherence coherence) {
     SF_ALIGNED(struct RTCRayHit16) rays;
     memset(&rays, 0, sizeof rays);
     memset(rays.ray.mask, 0xff, sizeof rays.ray.mask);
@@ -88,32 +90,30 @@ void sf_trace_nearest(sf_batch *b, const sf_scene *scene, uint32_t packets, cons
     }
 }
 
-/* One packet of shadow rays, `lanes` of them. */
-static void trace_shadow_packet(sf_batch *b, const sf_scene *scene, float (*from)[SF_PATHS], const uint32_t *order,
-                                uint32_t lanes) {
-    SF_ALIGNED(struct RTCRay16) rays;
+/* Packs the rays that the list names next, and traces the first `lanes` of them. */
+static inline void trace_shadow_packet(sf_batch *b, const sf_scene *scene, float (*from)[SF_PATHS],
+                                       struct RTCRay16 *rays, const uint32_t *order, uint32_t lanes) {
     SF_ALIGNED(int) valid[SF_LANES];
-    for (uint32_t l = 0; l < SF_LANES; ++l) {
-        uint32_t i = order[l < lanes ? l : 0];
-        rays.org_x[l] = from[0][i];
-        rays.org_y[l] = from[1][i];
-        rays.org_z[l] = from[2][i];
-        rays.dir_x[l] = b->to_light[0][i];
-        rays.dir_y[l] = b->to_light[1][i];
-        rays.dir_z[l] = b->to_light[2][i];
-    }
-    memset(rays.tnear, 0, sizeof rays.tnear);
-    memset(rays.time, 0, sizeof rays.time);
-    memset(rays.mask, 0xff, sizeof rays.mask);
-    memset(rays.id, 0, sizeof rays.id);
-    memset(rays.flags, 0, sizeof rays.flags);
-    for (int l = 0; l < SF_LANES; ++l) rays.tfar[l] = 1;
+    for (uint32_t l = 0; l < SF_LANES; ++l) rays->org_x[l] = from[0][order[l]];
+    for (uint32_t l = 0; l < SF_LANES; ++l) rays->org_y[l] = from[1][order[l]];
+    for (uint32_t l = 0; l < SF_LANES; ++l) rays->org_z[l] = from[2][order[l]];
+    for (uint32_t l = 0; l < SF_LANES; ++l) rays->dir_x[l] = b->to_light[0][order[l]];
+    for (uint32_t l = 0; l < SF_LANES; ++l) rays->dir_y[l] = b->to_light[1][order[l]];
+    for (uint32_t l = 0; l < SF_LANES; ++l) rays->dir_z[l] = b->to_light[2][order[l]];
+    for (uint32_t l = 0; l < SF_LANES; ++l) rays->tfar[l] = 1;
     set_valid(valid, lanes < SF_LANES ? (1u << lanes) - 1 : 0xffffu);
-    sf_embree_occluded16(scene->embree, valid, &rays, SF_INCOHERENT);
-    for (uint32_t l = 0; l < lanes; ++l) b->arrives[order[l]] = rays.tfar[l] > 0 ? 1.0f : 0.0f;
+    sf_embree_occluded16(scene->embree, valid, rays, SF_INCOHERENT);
+    for (uint32_t l = 0; l < lanes; ++l) b->arrives[order[l]] = rays->tfar[l] > 0 ? 1.0f : 0.0f;
 }
 
-void sf_trace_shadow(sf_batch *b, const sf_scene *scene, float (*from)[SF_PATHS], uint32_t count) {
+static void shadow(sf_batch *b, const sf_scene *scene, float (*from)[SF_PATHS], uint32_t count) {
+    SF_ALIGNED(struct RTCRay16) rays;
+    memset(&rays, 0, sizeof rays);
+    memset(rays.mask, 0xff, sizeof rays.mask);
+    for (uint32_t i = count; i < sf_whole_packets(count); ++i) b->order[i] = b->order[0];
     for (uint32_t first = 0; first < count; first += SF_LANES)
-        trace_shadow_packet(b, scene, from, b->order + first, count - first < SF_LANES ? count - first : SF_LANES);
+        trace_shadow_packet(b, scene, from, &rays, b->order + first,
+                            count - first < SF_LANES ? count - first : SF_LANES);
 }
+
+const sf_trace_kernels SF_AT_LEVEL(sf_trace_kernels) = {nearest, shadow};
