@@ -30,11 +30,11 @@ static const uint32_t reversed_lanes[SF_LANES] = {
 
 /* Adds the last four bits of the indices, which are given with their bits reversed, to their starts,
  * and scrambles. */
-static inline void sobol_lanes(const uint32_t table[4][256], const uint32_t starts[SF_LANES],
-                               const uint32_t reversed[SF_LANES], const uint32_t seeds[SF_LANES],
+static inline void sobol_lanes(const uint32_t table[4][256], const uint32_t *SF_RESTRICT starts,
+                               const uint32_t *SF_RESTRICT seeds, const uint32_t *SF_RESTRICT reversed, uint32_t count,
                                float *SF_RESTRICT out) {
     uint32_t column0 = table[0][1], column1 = table[0][2], column2 = table[0][4], column3 = table[0][8];
-    for (int l = 0; l < SF_LANES; ++l) {
+    for (uint32_t l = 0; l < count; ++l) {
         uint32_t i = reversed[l];
         uint32_t x = starts[l] ^ ((0u - (i >> 31)) & column0) ^ ((0u - (i >> 30 & 1u)) & column1) ^
                      ((0u - (i >> 29 & 1u)) & column2) ^ ((0u - (i >> 28 & 1u)) & column3);
@@ -42,42 +42,46 @@ static inline void sobol_lanes(const uint32_t table[4][256], const uint32_t star
     }
 }
 
-/* The samples first_sample .. first_sample + width - 1 of the blocks, which share packets where they
- * are fewer than 16. The set's order keeps the 16 samples of a block together: they differ in the
- * last four bits of their indices. */
+/* What is of a block, for its lanes. */
+static inline void spread(const uint32_t *SF_RESTRICT values, uint32_t count, uint32_t width,
+                          uint32_t *SF_RESTRICT out) {
+    for (uint32_t b = 0; b < count; ++b)
+        for (uint32_t l = 0; l < width; ++l) out[b * width + l] = values[b];
+}
+
+/* The samples first_sample .. first_sample + width - 1 of the blocks, which share packets where they are
+ * fewer than 16. The set's order keeps the 16 samples of a block together: they differ in the last four
+ * bits of their indices, and the rest of an index hangs on the rest of it alone. What is of the
+ * blocks is made for the whole batch, and then what is of the lanes, so that no packet waits for it. */
 static inline void fill_sobol(const sf_coordinates *coordinates, const sf_coordinate_source *source,
-                              const sf_block *blocks, uint32_t block_count, uint32_t width, uint32_t first_sample,
+                              const sf_block *blocks, uint32_t count, uint32_t width, uint32_t first_sample,
                               float (*SF_RESTRICT out)[SF_PATHS]) {
-    uint32_t sharing = SF_LANES / width;
-    for (uint32_t b = 0; b < block_count; b += sharing) {
-        uint64_t keys[SF_LANES];
-        uint32_t indices[SF_LANES];
-        SF_ALIGNED(uint32_t) reversed[SF_LANES];
-        SF_ALIGNED(uint32_t) seeds[SF_LANES];
-        SF_ALIGNED(uint32_t) starts[SF_LANES];
-        for (uint32_t j = 0; j < sharing; ++j) {
-            const sf_block *block = blocks + (b + j < block_count ? b + j : b);
-            uint32_t base = sf_reverse_bits32(block->base), seed;
-            keys[j] = set_key(block->key, source->set);
-            seed = (uint32_t)(keys[j] >> 32);
-            for (uint32_t l = 0; l < width; ++l) {
-                uint32_t index = base | reversed_lanes[first_sample + l];
-                reversed[j * width + l] = source->set ? sf_owen_hash32(index, seed) : index;
-            }
-            indices[j] = sf_reverse_bits32(reversed[j * width]);
-        }
-        for (uint32_t d = 0; d < source->count; ++d) {
-            const uint32_t (*table)[256] = coordinates->sobol[source->dimension + d];
-            for (uint32_t j = 0; j < sharing; ++j) {
-                uint32_t seed = (uint32_t)dimension_key(keys[j], source->dimension + d);
-                uint32_t start = sobol_start(table, indices[j]);
-                for (uint32_t l = 0; l < width; ++l) {
-                    seeds[j * width + l] = seed;
-                    starts[j * width + l] = start;
-                }
-            }
-            sobol_lanes(table, starts, reversed, seeds, out[d] + b * width);
-        }
+    uint64_t keys[SF_BLOCKS];
+    uint32_t bases[SF_BLOCKS], seeds[SF_BLOCKS], starts[SF_BLOCKS], indices[SF_BLOCKS];
+    SF_ALIGNED(uint32_t) reversed[SF_PATHS];
+    SF_ALIGNED(uint32_t) lane_seeds[SF_PATHS];
+    SF_ALIGNED(uint32_t) lane_starts[SF_PATHS];
+    uint32_t lanes = count * width;
+    for (uint32_t b = 0; b < count; ++b) {
+        keys[b] = set_key(blocks[b].key, source->set);
+        bases[b] = sf_reverse_bits32(blocks[b].base);
+    }
+    for (uint32_t b = 0; b < count; ++b) {
+        seeds[b] = (uint32_t)(keys[b] >> 32);
+        indices[b] = sf_reverse_bits32(source->set ? sf_owen_hash32(bases[b], seeds[b]) : bases[b]);
+        for (uint32_t l = 0; l < width; ++l) reversed[b * width + l] = bases[b] | reversed_lanes[first_sample + l];
+    }
+    if (source->set) {
+        spread(seeds, count, width, lane_seeds);
+        for (uint32_t l = 0; l < lanes; ++l) reversed[l] = sf_owen_hash32(reversed[l], lane_seeds[l]);
+    }
+    for (uint32_t d = 0; d < source->count; ++d) {
+        const uint32_t (*table)[256] = coordinates->sobol[source->dimension + d];
+        for (uint32_t b = 0; b < count; ++b) seeds[b] = (uint32_t)dimension_key(keys[b], source->dimension + d);
+        for (uint32_t b = 0; b < count; ++b) starts[b] = sobol_start(table, indices[b]);
+        spread(seeds, count, width, lane_seeds);
+        spread(starts, count, width, lane_starts);
+        sobol_lanes(table, lane_starts, lane_seeds, reversed, lanes, out[d]);
     }
 }
 

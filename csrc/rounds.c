@@ -163,14 +163,16 @@ static bool decide_pixel(sf_rounds *r, uint32_t x, uint32_t y, size_t state) {
 
 /* Closes the pixels that are done, and counts those of the picture. */
 static void decide_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
-    for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m) {
-        if (!(r->active[cell] >> m & 1u)) continue;
-        if (!decide_pixel(r, sf_rounds_x(r, cell, m), sf_rounds_y(r, cell, m), r->sampled)) continue;
-        r->open[cell] &= ~(UINT64_C(1) << m);
-        if (!sf_rounds_counts(r, sf_rounds_x(r, cell, m), sf_rounds_y(r, cell, m))) continue;
-        ++worker->done;
-        worker->met += sf_rounds_pixel(r, cell, m)->reason == SF_STOP_MET;
-    }
+    uint32_t x0 = sf_rounds_x(r, cell, 0), y0 = sf_rounds_y(r, cell, 0);
+    for (uint32_t y = y0; y < y0 + SF_CELL_SIZE; ++y) /* row by row, as they lie in memory */
+        for (uint32_t x = x0; x < x0 + SF_CELL_SIZE; ++x) {
+            uint64_t bit = UINT64_C(1) << sf_cell_number(x, y);
+            if (!(r->active[cell] & bit) || !decide_pixel(r, x, y, r->sampled)) continue;
+            r->open[cell] &= ~bit;
+            if (!sf_rounds_counts(r, x, y)) continue;
+            ++worker->done;
+            worker->met += r->film->pixels[(size_t)y * r->film->width + x].reason == SF_STOP_MET;
+        }
 }
 
 static void decide_tile(void *user, unsigned worker, size_t item) {
