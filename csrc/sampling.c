@@ -46,9 +46,8 @@ static void flush_batch(sf_rounds *r, sf_rounds_worker *worker) {
         (void)sf_atomic_replace(&r->state, SF_RUNNING, SF_OUT_OF_TIME); /* an interruption stays */
 }
 
-/* The block of pixel m that starts at sample `n`. */
-static sf_block make_block(const sf_rounds *r, uint32_t cell, uint32_t m, uint64_t key, uint32_t n) {
-    uint32_t x = sf_rounds_x(r, cell, m), y = sf_rounds_y(r, cell, m);
+/* The block of pixel (x, y) of the film that starts at sample `n`. */
+static sf_block make_block(const sf_rounds *r, uint32_t x, uint32_t y, uint64_t key, uint32_t n) {
     uint32_t base = n / SF_LANES * SF_LANES, end = r->to - base < SF_LANES ? r->to - base : SF_LANES;
     sf_block block = {.key = key,
                       .base = base,
@@ -103,6 +102,7 @@ static block_layout lay_out_blocks(const sf_rounds *r, uint32_t n) {
 static void sample_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
     if (sf_atomic_load(&r->state) != SF_RUNNING) return;
     uint64_t active = r->active[cell], keys[SF_CELL_PIXELS];
+    uint32_t x = sf_rounds_x(r, cell, 0), y = sf_rounds_y(r, cell, 0);
     sf_batch *batch = &worker->batch;
     sf_work_resume(&batch->clock);
     choose_keys(r, worker, cell, active, keys);
@@ -115,7 +115,7 @@ static void sample_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
             if (!(active >> m & 1u)) continue;
             uint32_t first = skip_taken(r, cell, m, n);
             if (first >= block_end(r, n)) continue;
-            batch->blocks[batch->block_count++] = make_block(r, cell, m, keys[m], first);
+            batch->blocks[batch->block_count++] = make_block(r, x + sf_cell_x(m), y + sf_cell_y(m), keys[m], first);
             if (batch->block_count < SF_BLOCKS) continue;
             flush_batch(r, worker);
             if (sf_atomic_load(&r->state) != SF_RUNNING) return;
