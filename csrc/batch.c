@@ -118,8 +118,9 @@ static void connect_lights(run *r, uint32_t bounce, uint32_t count) {
     } else
         (r->special ? r->shapes->light : r->light->light)(b, scene, count, weigh);
     if (has(r, SF_STAGE_FOG)) sf_fog_kernels_at(r->context->isa)->dim(b, scene, count);
-    bool sorted = r->sorts && bounce > 1; /* by the rays that found the vertices */
-    uint32_t rays = (sorted ? r->order->list_alive : r->order->sort_shadow_rays)(b, count);
+    /* Those of the first bounce are together by the pixel, those of sorted surface rays by these. */
+    bool sort = bounce > 1 && !r->sorts;
+    uint32_t rays = (sort ? r->order->sort_shadow_rays : r->order->list_alive)(b, count);
     begin(r, SF_WORK_SHADOW_RAYS);
     r->trace->shadow(b, scene, r->material ? b->origin : b->point, rays);
     begin(r, SF_WORK_LIGHT);

@@ -90,16 +90,42 @@ static void nearest(sf_batch *b, const sf_scene *scene, uint32_t packets, const 
     }
 }
 
-/* Packs the rays that the list names next, and traces the first `lanes` of them. */
+/* Whether the list names 16 rays that lie one after another. */
+static inline bool are_together(const uint32_t *order) {
+    uint32_t different = 0;
+    for (uint32_t l = 0; l < SF_LANES; ++l) different |= order[l] ^ (order[0] + l);
+    return different == 0;
+}
+
+static inline void pick(const float *SF_RESTRICT from, const uint32_t *SF_RESTRICT order, float *SF_RESTRICT to) {
+    for (uint32_t l = 0; l < SF_LANES; ++l) to[l] = from[order[l]];
+}
+
+static inline void pack_shadow_rays(float (*from)[SF_PATHS], float (*to)[SF_PATHS], const uint32_t *order,
+                                    struct RTCRay16 *rays) {
+    if (are_together(order)) {
+        uint32_t i = order[0];
+        memcpy(rays->org_x, from[0] + i, sizeof rays->org_x);
+        memcpy(rays->org_y, from[1] + i, sizeof rays->org_y);
+        memcpy(rays->org_z, from[2] + i, sizeof rays->org_z);
+        memcpy(rays->dir_x, to[0] + i, sizeof rays->dir_x);
+        memcpy(rays->dir_y, to[1] + i, sizeof rays->dir_y);
+        memcpy(rays->dir_z, to[2] + i, sizeof rays->dir_z);
+    } else {
+        pick(from[0], order, rays->org_x);
+        pick(from[1], order, rays->org_y);
+        pick(from[2], order, rays->org_z);
+        pick(to[0], order, rays->dir_x);
+        pick(to[1], order, rays->dir_y);
+        pick(to[2], order, rays->dir_z);
+    }
+}
+
+/* Traces the first `lanes` of the rays that the list names next. */
 static inline void trace_shadow_packet(sf_batch *b, const sf_scene *scene, float (*from)[SF_PATHS],
                                        struct RTCRay16 *rays, const uint32_t *order, uint32_t lanes) {
     SF_ALIGNED(int) valid[SF_LANES];
-    for (uint32_t l = 0; l < SF_LANES; ++l) rays->org_x[l] = from[0][order[l]];
-    for (uint32_t l = 0; l < SF_LANES; ++l) rays->org_y[l] = from[1][order[l]];
-    for (uint32_t l = 0; l < SF_LANES; ++l) rays->org_z[l] = from[2][order[l]];
-    for (uint32_t l = 0; l < SF_LANES; ++l) rays->dir_x[l] = b->to_light[0][order[l]];
-    for (uint32_t l = 0; l < SF_LANES; ++l) rays->dir_y[l] = b->to_light[1][order[l]];
-    for (uint32_t l = 0; l < SF_LANES; ++l) rays->dir_z[l] = b->to_light[2][order[l]];
+    pack_shadow_rays(from, b->to_light, order, rays);
     for (uint32_t l = 0; l < SF_LANES; ++l) rays->tfar[l] = 1;
     set_valid(valid, lanes < SF_LANES ? (1u << lanes) - 1 : 0xffffu);
     sf_embree_occluded16(scene->embree, valid, rays, SF_INCOHERENT);
