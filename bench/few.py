@@ -95,7 +95,7 @@ def main() -> None:
     ratios: dict[str, list[float]] = {}
     for k in range(given.rounds):
         first, second = (never, always) if k % 2 else (always, never)
-        taken = {build: cast("dict[str, float]", run(build, TIMED)) for build in (first, second)}
+        taken = {installed: cast("dict[str, float]", run(installed, TIMED)) for installed in (first, second)}
         for name, seconds in taken[always].items():
             ratios.setdefault(name, []).append(seconds / taken[never][name])
     for name, values in ratios.items():

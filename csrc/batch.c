@@ -14,6 +14,7 @@
 #include "light_shape_kernels.h"
 #include "material_kernels.h"
 #include "order_kernels.h"
+#include "rays.h"
 #include "round_kernels.h"
 #include "shade_kernels.h"
 #include "sky_kernels.h"
@@ -137,7 +138,7 @@ static void add_found(run *r, uint32_t count) {
     }
     r->shapes->found(b, scene, count);
     if (has(r, SF_STAGE_SKY)) sf_sky_kernels_at(r->context->isa)->later(b, scene, count);
-    r->shapes->add_found(b, count);
+    sf_add_by_path(b, b->emission, count);
 }
 
 /* The rays off surfaces of all kinds, at the last bounce perhaps of all but the diffuse. Returns

@@ -65,7 +65,7 @@ typedef struct sf_batch {
 
     float to_light[3][SF_PATHS];     /* from the vertex, not normalized */
     float contribution[3][SF_PATHS]; /* if nothing is in between */
-    uint32_t bin[SF_PATHS];          /* of the shadow ray: packets are formed within bins */
+    uint32_t bin[SF_PATHS];          /* of the ray, to be sorted by; scratch of moving paths */
     uint32_t order[SF_PATHS];        /* a permutation of rays, or a list of some */
     float arrives[SF_PATHS];         /* 1 where nothing is in between */
     float gather[SF_PATHS];          /* scratch of moving */

@@ -546,6 +546,4 @@ static void found(sf_batch *b, const sf_scene *scene, uint32_t count) {
             for (int c = 0; c < 3; ++c) b->emission[c][i] = b->throughput[c][i] * scene->background[c];
 }
 
-static void add_found(sf_batch *b, uint32_t count) { sf_add_by_path(b, b->emission, count); }
-
-const sf_light_shape_kernels SF_AT_LEVEL(sf_light_shape_kernels) = {light, bare_light, found, add_found};
+const sf_light_shape_kernels SF_AT_LEVEL(sf_light_shape_kernels) = {light, bare_light, found};

@@ -22,9 +22,6 @@ typedef struct sf_light_shape_kernels {
     /* Fills `emission` of surface rays, times throughput: the share of what they hit that light
      * sampling leaves to them, and the background. */
     void (*found)(sf_batch *batch, const sf_scene *scene, uint32_t count);
-
-    /* Adds `emission` to the radiance of the paths. */
-    void (*add_found)(sf_batch *batch, uint32_t count);
 } sf_light_shape_kernels;
 SF_KERNELS(sf_light_shape_kernels)
 

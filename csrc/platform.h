@@ -26,13 +26,6 @@
 /* Tells the compiler that the pointer is aligned to SF_ALIGNMENT bytes. */
 #define SF_ASSUME_ALIGNED(p) __builtin_assume_aligned((p), SF_ALIGNMENT)
 
-/* Promises that a loop's iterations write to distinct places (scatters through an index). */
-#if defined(__clang__)
-#define SF_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
-#else
-#define SF_INDEPENDENT _Pragma("GCC ivdep")
-#endif
-
 /* Keeps a short loop a loop, for the vectorizer to take: unrolled first, it is taken apart into
  * scalars. */
 #if defined(__clang__)

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-/* Rays to Embree and back, in packets of 16. The width and the flags of a stage never change, so
- * that Embree's answers do not depend on which rays share a packet. */
+/* Rays to Embree and back, in packets of 16. The width and the flags of a stage never change while a
+ * scene is rendered, so that Embree's answers do not depend on which rays share a packet. */
 
 #include "trace_kernels.h"
 
@@ -50,16 +50,21 @@ static void take_placed_hits(sf_batch *b, const sf_scene *scene, const struct RT
         memcpy(b->primitive + first, rays->hit.primID, sizeof rays->hit.primID);
 }
 
+/* The 16 rays from `first` on. */
+static inline void copy_rays(float (*from)[SF_PATHS], float (*to)[SF_PATHS], uint32_t first, struct RTCRay16 *rays) {
+    memcpy(rays->org_x, from[0] + first, sizeof rays->org_x);
+    memcpy(rays->org_y, from[1] + first, sizeof rays->org_y);
+    memcpy(rays->org_z, from[2] + first, sizeof rays->org_z);
+    memcpy(rays->dir_x, to[0] + first, sizeof rays->dir_x);
+    memcpy(rays->dir_y, to[1] + first, sizeof rays->dir_y);
+    memcpy(rays->dir_z, to[2] + first, sizeof rays->dir_z);
+}
+
 /* Traces a packet whose masks and times are set. */
-static inline void trace_packet(const sf_batch *b, const sf_scene *scene, struct RTCRayHit16 *rays, uint32_t first,
+static inline void trace_packet(sf_batch *b, const sf_scene *scene, struct RTCRayHit16 *rays, uint32_t first,
                                 uint32_t active, sf_coherence coherence) {
     SF_ALIGNED(int) valid[SF_LANES];
-    memcpy(rays->ray.org_x, b->origin[0] + first, sizeof rays->ray.org_x);
-    memcpy(rays->ray.org_y, b->origin[1] + first, sizeof rays->ray.org_y);
-    memcpy(rays->ray.org_z, b->origin[2] + first, sizeof rays->ray.org_z);
-    memcpy(rays->ray.dir_x, b->direction[0] + first, sizeof rays->ray.dir_x);
-    memcpy(rays->ray.dir_y, b->direction[1] + first, sizeof rays->ray.dir_y);
-    memcpy(rays->ray.dir_z, b->direction[2] + first, sizeof rays->ray.dir_z);
+    copy_rays(b->origin, b->direction, first, &rays->ray);
     for (int l = 0; l < SF_LANES; ++l) rays->ray.tfar[l] = INFINITY;
     memset(rays->hit.geomID, 0xff, sizeof rays->hit.geomID);
     memset(rays->hit.instID, 0xff, sizeof rays->hit.instID);
@@ -104,21 +109,15 @@ static inline void pick(const float *SF_RESTRICT from, const uint32_t *SF_RESTRI
 static inline void pack_shadow_rays(float (*from)[SF_PATHS], float (*to)[SF_PATHS], const uint32_t *order,
                                     struct RTCRay16 *rays) {
     if (are_together(order)) {
-        uint32_t i = order[0];
-        memcpy(rays->org_x, from[0] + i, sizeof rays->org_x);
-        memcpy(rays->org_y, from[1] + i, sizeof rays->org_y);
-        memcpy(rays->org_z, from[2] + i, sizeof rays->org_z);
-        memcpy(rays->dir_x, to[0] + i, sizeof rays->dir_x);
-        memcpy(rays->dir_y, to[1] + i, sizeof rays->dir_y);
-        memcpy(rays->dir_z, to[2] + i, sizeof rays->dir_z);
-    } else {
-        pick(from[0], order, rays->org_x);
-        pick(from[1], order, rays->org_y);
-        pick(from[2], order, rays->org_z);
-        pick(to[0], order, rays->dir_x);
-        pick(to[1], order, rays->dir_y);
-        pick(to[2], order, rays->dir_z);
+        copy_rays(from, to, order[0], rays);
+        return;
     }
+    pick(from[0], order, rays->org_x);
+    pick(from[1], order, rays->org_y);
+    pick(from[2], order, rays->org_z);
+    pick(to[0], order, rays->dir_x);
+    pick(to[1], order, rays->dir_y);
+    pick(to[2], order, rays->dir_z);
 }
 
 /* Traces the first `lanes` of the rays that the list names next. */
