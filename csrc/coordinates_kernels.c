@@ -4,6 +4,7 @@
 #include "coordinates_kernels.h"
 
 #include <stdbool.h>
+#include <string.h>
 
 #include "coordinates_halton_kernels.h"
 #include "platform.h"
@@ -28,25 +29,48 @@ static const uint32_t reversed_lanes[SF_LANES] = {
     0x0u << 28, 0x8u << 28, 0x4u << 28, 0xcu << 28, 0x2u << 28, 0xau << 28, 0x6u << 28, 0xeu << 28,
     0x1u << 28, 0x9u << 28, 0x5u << 28, 0xdu << 28, 0x3u << 28, 0xbu << 28, 0x7u << 28, 0xfu << 28};
 
-/* Adds the last four bits of the indices, which are given with their bits reversed, to their starts,
- * and scrambles. */
-static inline void sobol_lanes(const uint32_t table[4][256], const uint32_t *SF_RESTRICT starts,
-                               const uint32_t *SF_RESTRICT seeds, const uint32_t *SF_RESTRICT reversed, uint32_t count,
-                               float *SF_RESTRICT out) {
-    uint32_t column0 = table[0][1], column1 = table[0][2], column2 = table[0][4], column3 = table[0][8];
-    for (uint32_t l = 0; l < count; ++l) {
-        uint32_t i = reversed[l];
-        uint32_t x = starts[l] ^ ((0u - (i >> 31)) & column0) ^ ((0u - (i >> 30 & 1u)) & column1) ^
-                     ((0u - (i >> 29 & 1u)) & column2) ^ ((0u - (i >> 28 & 1u)) & column3);
-        out[l] = sf_owen_float(x, seeds[l]);
-    }
-}
-
-/* What is of a block, for its lanes. */
+/* What is of a block, for its lanes; in those past the end, up to a whole packet, 0. */
 static inline void spread(const uint32_t *SF_RESTRICT values, uint32_t count, uint32_t width,
                           uint32_t *SF_RESTRICT out) {
     for (uint32_t b = 0; b < count; ++b)
         for (uint32_t l = 0; l < width; ++l) out[b * width + l] = values[b];
+    for (uint32_t l = count * width; l % SF_LANES; ++l) out[l] = 0;
+}
+
+/* Sixteen floats of words with their bits reversed. */
+static inline void scramble_packet(const uint32_t *SF_RESTRICT words, const uint32_t *SF_RESTRICT seeds,
+                                   float *SF_RESTRICT out) {
+    SF_ALIGNED(uint32_t) bits[SF_LANES];
+    for (uint32_t l = 0; l < SF_LANES; ++l) bits[l] = sf_owen_hash32(words[l], seeds[l]);
+    for (uint32_t l = 0; l < SF_LANES; l += SF_LANES32) {
+        sf_lanes32 lanes;
+        memcpy(&lanes, bits + l, sizeof lanes);
+        lanes = sf_lanes32_reverse_bits(lanes);
+        memcpy(bits + l, &lanes, sizeof lanes);
+    }
+    for (uint32_t l = 0; l < SF_LANES; ++l) out[l] = sf_float_from_bits(bits[l]);
+}
+
+/* What the lanes' last four bits add to the words of their blocks, by indices that are given with their
+ * bits reversed. */
+static inline void add_lanes(const uint32_t table[256], const uint32_t *SF_RESTRICT reversed, uint32_t count,
+                             uint32_t *SF_RESTRICT words) {
+    uint32_t column0 = table[1], column1 = table[2], column2 = table[4], column3 = table[8];
+    for (uint32_t l = 0; l < count; ++l) {
+        uint32_t i = reversed[l];
+        words[l] ^= ((0u - (i >> 31)) & column0) ^ ((0u - (i >> 30 & 1u)) & column1) ^
+                    ((0u - (i >> 29 & 1u)) & column2) ^ ((0u - (i >> 28 & 1u)) & column3);
+    }
+}
+
+/* The samples of blocks that have the same indices, in the set's own order: packets differ by their
+ * seeds alone. */
+static inline void fill_in_step(const uint32_t table[4][256], uint32_t base, const uint32_t *SF_RESTRICT seeds,
+                                uint32_t lanes, uint32_t width, uint32_t first_sample, float *SF_RESTRICT out) {
+    SF_ALIGNED(uint32_t) words[SF_LANES];
+    uint32_t start = sobol_start(table, base);
+    for (uint32_t l = 0; l < SF_LANES; ++l) words[l] = start ^ table[0][first_sample + l % width];
+    for (uint32_t l = 0; l < lanes; l += SF_LANES) scramble_packet(words, seeds + l, out + l);
 }
 
 /* The samples first_sample .. first_sample + width - 1 of the blocks, which share packets where they are
@@ -57,20 +81,22 @@ static inline void fill_sobol(const sf_coordinates *coordinates, const sf_coordi
                               const sf_block *blocks, uint32_t count, uint32_t width, uint32_t first_sample,
                               float (*SF_RESTRICT out)[SF_PATHS]) {
     uint64_t keys[SF_BLOCKS];
-    uint32_t bases[SF_BLOCKS], seeds[SF_BLOCKS], starts[SF_BLOCKS], indices[SF_BLOCKS];
+    uint32_t bases[SF_BLOCKS], seeds[SF_BLOCKS], starts[SF_BLOCKS], indices[SF_BLOCKS], differ = source->set;
     SF_ALIGNED(uint32_t) reversed[SF_PATHS];
     SF_ALIGNED(uint32_t) lane_seeds[SF_PATHS];
-    SF_ALIGNED(uint32_t) lane_starts[SF_PATHS];
+    SF_ALIGNED(uint32_t) words[SF_PATHS];
     uint32_t lanes = count * width;
     for (uint32_t b = 0; b < count; ++b) {
         keys[b] = set_key(blocks[b].key, source->set);
-        bases[b] = sf_reverse_bits32(blocks[b].base);
+        differ |= blocks[b].base ^ blocks[0].base;
     }
-    for (uint32_t b = 0; b < count; ++b) {
-        seeds[b] = (uint32_t)(keys[b] >> 32);
-        indices[b] = sf_reverse_bits32(source->set ? sf_owen_hash32(bases[b], seeds[b]) : bases[b]);
-        for (uint32_t l = 0; l < width; ++l) reversed[b * width + l] = bases[b] | reversed_lanes[first_sample + l];
-    }
+    if (differ)
+        for (uint32_t b = 0; b < count; ++b) {
+            bases[b] = sf_reverse_bits32(blocks[b].base);
+            seeds[b] = (uint32_t)(keys[b] >> 32);
+            indices[b] = sf_reverse_bits32(source->set ? sf_owen_hash32(bases[b], seeds[b]) : bases[b]);
+            for (uint32_t l = 0; l < width; ++l) reversed[b * width + l] = bases[b] | reversed_lanes[first_sample + l];
+        }
     if (source->set) {
         spread(seeds, count, width, lane_seeds);
         for (uint32_t l = 0; l < lanes; ++l) reversed[l] = sf_owen_hash32(reversed[l], lane_seeds[l]);
@@ -78,10 +104,15 @@ static inline void fill_sobol(const sf_coordinates *coordinates, const sf_coordi
     for (uint32_t d = 0; d < source->count; ++d) {
         const uint32_t (*table)[256] = coordinates->sobol[source->dimension + d];
         for (uint32_t b = 0; b < count; ++b) seeds[b] = (uint32_t)dimension_key(keys[b], source->dimension + d);
-        for (uint32_t b = 0; b < count; ++b) starts[b] = sobol_start(table, indices[b]);
         spread(seeds, count, width, lane_seeds);
-        spread(starts, count, width, lane_starts);
-        sobol_lanes(table, lane_starts, lane_seeds, reversed, lanes, out[d]);
+        if (!differ) {
+            fill_in_step(table, blocks[0].base, lane_seeds, lanes, width, first_sample, out[d]);
+            continue;
+        }
+        for (uint32_t b = 0; b < count; ++b) starts[b] = sobol_start(table, indices[b]);
+        spread(starts, count, width, words);
+        add_lanes(table[0], reversed, lanes, words);
+        for (uint32_t l = 0; l < lanes; l += SF_LANES) scramble_packet(words + l, lane_seeds + l, out[d] + l);
     }
 }
 

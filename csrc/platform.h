@@ -95,6 +95,13 @@ static inline void sf_stream_end(void) {
 #endif
 }
 
+/* Asks for memory that will be written before long. */
+static inline void sf_prefetch(const void *memory, size_t bytes) {
+    const char *first = (const char *)memory;
+    for (size_t i = 0; i < bytes; i += 64) __builtin_prefetch(first + i, 1);
+    __builtin_prefetch(first + bytes - 1, 1);
+}
+
 /* A counter that threads advance together. */
 typedef struct sf_atomic_size {
     size_t value;
@@ -129,6 +136,43 @@ static inline sf_lanes64 sf_lanes64_multiply32(sf_lanes64 a, sf_lanes64 b) {
     return (sf_lanes64)_mm_mul_epu32((__m128i)a, (__m128i)b);
 #else
     return (a & 0xffffffffu) * (b & 0xffffffffu);
+#endif
+}
+
+/* The same of 32 bits. */
+#if defined(__AVX512BW__)
+enum { SF_LANES32 = 16 };
+#elif defined(__AVX2__)
+enum { SF_LANES32 = 8 };
+#else
+enum { SF_LANES32 = 4 };
+#endif
+typedef uint32_t sf_lanes32 __attribute__((vector_size(4 * SF_LANES32)));
+
+/* Of each lane its bits in reverse order. Half bytes are looked up and bytes moved where the instruction
+ * set can, which takes half as long as swapping ever larger groups of bits. */
+static inline sf_lanes32 sf_lanes32_reverse_bits(sf_lanes32 x) {
+    const sf_lanes32 low = x & 0x0f0f0f0fu, high = x >> 4 & 0x0f0f0f0fu;
+#if defined(__AVX2__)
+    const __m128i halves = _mm_setr_epi8(0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15);
+    const __m128i bytes = _mm_setr_epi8(3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12);
+#endif
+#if defined(__AVX512BW__)
+    const __m512i table = _mm512_broadcast_i32x4(halves), order = _mm512_broadcast_i32x4(bytes);
+    const sf_lanes32 first = (sf_lanes32)_mm512_shuffle_epi8(table, (__m512i)low) << 4;
+    const sf_lanes32 second = (sf_lanes32)_mm512_shuffle_epi8(table, (__m512i)high);
+    return (sf_lanes32)_mm512_shuffle_epi8((__m512i)(first | second), order);
+#elif defined(__AVX2__)
+    const __m256i table = _mm256_broadcastsi128_si256(halves), order = _mm256_broadcastsi128_si256(bytes);
+    const sf_lanes32 first = (sf_lanes32)_mm256_shuffle_epi8(table, (__m256i)low) << 4;
+    const sf_lanes32 second = (sf_lanes32)_mm256_shuffle_epi8(table, (__m256i)high);
+    return (sf_lanes32)_mm256_shuffle_epi8((__m256i)(first | second), order);
+#else
+    x = low << 4 | high;
+    x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
+    x = (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
+    x = (x & 0x00ff00ffu) << 8 | (x >> 8 & 0x00ff00ffu);
+    return x << 16 | x >> 16;
 #endif
 }
 
