@@ -7,43 +7,53 @@
 
 #include "lanes.h"
 
-/* keep[l] = 1 where the sample was asked for and is finite, else 0. */
-static inline void choose_samples(const sf_batch *b, uint32_t first, uint32_t wanted, uint32_t width, float *keep) {
+/* keep[l] = 1 where the sample was asked for and is finite, else 0. Returns how many are kept. */
+static inline uint32_t choose_samples(const sf_batch *b, uint32_t first, uint32_t wanted, uint32_t width,
+                                      uint32_t *keep) {
+    uint32_t count = 0;
     SF_ROLLED
     for (uint32_t l = 0; l < width; ++l) {
         float sum = b->radiance[0][first + l] + b->radiance[1][first + l] + b->radiance[2][first + l];
-        float asked = (float)(int)(wanted >> l & 1u);
-        keep[l] = fabsf(sum) <= 3.4e38f ? asked : 0.0f;
+        keep[l] = (uint32_t)(fabsf(sum) <= 3.4e38f) & wanted >> l;
+        count += keep[l] &= 1u;
     }
+    return count;
 }
 
-/* The lanes of a block are summed as if there were 16, those that it lacks being 0. */
-static inline void gather_lanes(const sf_batch *b, uint32_t block, uint32_t wanted, uint32_t width,
-                                sf_block_statistics *out) {
-    uint32_t first = block * width;
-    SF_ALIGNED(float) keep[SF_LANES];
+/* Mean and squares of the lanes kept, which are `count`: all, or those that `keep` says. The lanes of a
+ * block are summed as if there were 16, those that it lacks being 0. */
+static inline void sum_samples(const sf_batch *b, uint32_t first, uint32_t width, uint32_t count, bool all,
+                               const uint32_t *keep, sf_vector_moments *out) {
     SF_ALIGNED(double) value[SF_LANES], squares[SF_LANES] = {0};
-    choose_samples(b, first, wanted, width, keep);
-    SF_ROLLED
-    for (uint32_t l = 0; l < width; ++l) value[l] = (double)keep[l];
-    double count = sf_sum_lanes(value, width), inverse = count > 0 ? 1 / count : 0;
+    double inverse = count > 0 ? 1 / (double)count : 0;
     for (int c = 0; c < 3; ++c) {
         const float *radiance = b->radiance[c] + first;
         SF_ROLLED
-        for (uint32_t l = 0; l < width; ++l) value[l] = (double)(keep[l] > 0 ? radiance[l] : 0.0f);
-        double mean = out->moments.mean[c] = sf_sum_lanes(value, width) * inverse;
+        for (uint32_t l = 0; l < width; ++l) value[l] = (double)(all || keep[l] ? radiance[l] : 0.0f);
+        double mean = out->mean[c] = sf_sum_lanes(value, width) * inverse;
         SF_ROLLED
         for (uint32_t l = 0; l < width; ++l) {
-            double off = (double)keep[l] * (value[l] - mean);
+            double off = all || keep[l] ? value[l] - mean : 0.0;
             squares[l] += off * off;
         }
     }
+    out->count = count;
+    out->m2 = sf_sum_lanes(squares, width);
+}
+
+static inline void gather_lanes(const sf_batch *b, uint32_t block, uint32_t wanted, uint32_t width,
+                                sf_block_statistics *out) {
+    uint32_t first = block * width, hits = 0;
+    SF_ALIGNED(uint32_t) keep[SF_LANES];
+    uint32_t count = choose_samples(b, first, wanted, width, keep);
+    if (count == width)
+        sum_samples(b, first, width, width, true, keep, &out->moments);
+    else
+        sum_samples(b, first, width, count, false, keep, &out->moments);
     SF_ROLLED
-    for (uint32_t l = 0; l < width; ++l) value[l] = (double)(keep[l] * b->covered[first + l]);
-    out->hits = (uint32_t)(int)sf_sum_lanes(value, width);
-    out->moments.m2 = sf_sum_lanes(squares, width);
-    out->moments.count = (uint64_t)(int)count;
-    out->moments.nonfinite = (uint64_t)sf_count_bits(wanted) - out->moments.count;
+    for (uint32_t l = 0; l < width; ++l) hits += keep[l] & (uint32_t)(b->covered[first + l] > 0);
+    out->hits = hits;
+    out->moments.nonfinite = sf_count_bits(wanted) - count;
 }
 
 /* Each width with loops of its own. */
