@@ -10,16 +10,18 @@
 #include "rays.h"
 #include "sunfleck/mapping.h"
 
-/* The pieces that the 16 rays of a packet were given, field by field. */
+/* The pieces that the 16 rays of a packet were given, field by field, and the coordinates of their points. */
 typedef struct light_lanes {
     SF_ALIGNED(float) field[SF_LIGHT_SAMPLED][SF_LANES];
+    float s[SF_LANES], t[SF_LANES];
 } light_lanes;
 
 /* What connects vertex first + l to a point of its light piece. */
-static inline void connect(sf_batch *b, const light_lanes *lights, uint32_t first, uint32_t l, float s, float t,
+static inline void connect(sf_batch *SF_RESTRICT b, const light_lanes *SF_RESTRICT lights, size_t first, size_t l,
                            bool weigh) {
     const float (*field)[SF_LANES] = lights->field;
-    uint32_t i = first + l;
+    float s = lights->s[l], t = lights->t[l];
+    size_t i = first + l;
     /* On a triangle the lecture's map, on a parallelogram the unit square itself. */
     float root = sqrtf(s), rectangle = field[SF_LIGHT_RECTANGLE][l];
     float alpha = rectangle > 0 ? s : root * t, beta = rectangle > 0 ? t : 1 - root;
@@ -57,15 +59,11 @@ static inline void connect(sf_batch *b, const light_lanes *lights, uint32_t firs
     b->alive[i] = sum > 0;
 }
 
-static void connect_packet(sf_batch *b, const light_lanes *lights, float (*u)[SF_PATHS], uint32_t first, bool weigh) {
-    SF_ALIGNED(float) s[SF_LANES], t[SF_LANES]; /* apart from what is written below */
-    memcpy(s, u[0] + first, sizeof s);
-    memcpy(t, u[1] + first, sizeof t);
+static void connect_packet(sf_batch *SF_RESTRICT b, const light_lanes *SF_RESTRICT lights, uint32_t first, bool weigh) {
     if (weigh)
-        for (uint32_t l = 0; l < SF_LANES; ++l) connect(b, lights, first, l, s[l], t[l], true);
+        for (size_t l = 0; l < SF_LANES; ++l) connect(b, lights, first, l, true);
     else
-        for (uint32_t l = 0; l < SF_LANES; ++l) connect(b, lights, first, l, s[l], t[l], false);
-    for (uint32_t l = 0; l < SF_LANES; ++l) b->bin[first + l] = sf_shadow_bin(b, first + l, s[l], t[l]);
+        for (size_t l = 0; l < SF_LANES; ++l) connect(b, lights, first, l, false);
 }
 
 static inline void give_piece(light_lanes *lights, uint32_t l, const float piece[SF_LIGHT_FIELDS]) {
@@ -82,7 +80,9 @@ static void light(sf_batch *b, const sf_scene *scene, uint32_t count, bool weigh
         if (several) /* lanes past the end hold no place in the table: they keep what they have */
             for (uint32_t l = 0; l < SF_LANES && first + l < count; ++l)
                 give_piece(&lanes, l, lights->pieces[sf_choose_piece(lights, 0, u[2][first + l])]);
-        connect_packet(b, &lanes, u, first, weigh);
+        memcpy(lanes.s, u[0] + first, sizeof lanes.s);
+        memcpy(lanes.t, u[1] + first, sizeof lanes.t);
+        connect_packet(b, &lanes, first, weigh);
     }
 }
 

@@ -11,7 +11,7 @@
 
 typedef struct sf_light_kernels {
     /* Shadow rays towards the light points that coordinate[0 .. 1] (and [2], if there is a
-     * choice) stand for: to_light, contribution, bin, and `alive` where it is not zero.
+     * choice) stand for: to_light, contribution, and `alive` where it is not zero.
      * `weigh`: surface rays may find the same light, so take the light's share only. */
     void (*light)(sf_batch *batch, const sf_scene *scene, uint32_t count, bool weigh);
 

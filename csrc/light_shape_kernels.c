@@ -11,7 +11,8 @@
 #include "rays.h"
 #include "sunfleck/mapping.h"
 
-#define EACH_LANE for (uint32_t l = 0; l < SF_LANES; ++l)
+/* Lanes and rays are counted by size_t: in 32 bits an index might wrap, and no loop over them be vectorized. */
+#define EACH_LANE for (size_t l = 0; l < SF_LANES; ++l)
 #define COPY3(columns, l) {(columns)[0][l], (columns)[1][l], (columns)[2][l]}
 
 /* The pieces that the 16 rays of a packet were given, and the points that they are seen from. */
@@ -32,7 +33,7 @@ typedef struct drawn_lanes {
     SF_ALIGNED(float) radiance[3][SF_LANES]; /* over what the weight of the piece has */
 } drawn_lanes;
 
-static inline void give_piece(shape_lanes *lanes, uint32_t l, const float piece[SF_LIGHT_FIELDS]) {
+static inline void give_piece(shape_lanes *lanes, size_t l, const float piece[SF_LIGHT_FIELDS]) {
     for (int f = 0; f < SF_LIGHT_DRAWN; ++f) lanes->field[f][l] = piece[f];
 }
 
@@ -40,12 +41,12 @@ static inline void give_piece(shape_lanes *lanes, uint32_t l, const float piece[
 
 /* The vertices of a packet, those without a bit in `used` as its first. Light from behind is of no use to a
  * surface that lets none through; fog has no surface. */
-static void view_from(sf_tree_view *SF_RESTRICT view, const sf_batch *b, const sf_scene *scene, uint32_t first,
+static void view_from(sf_tree_view *SF_RESTRICT view, const sf_batch *b, const sf_scene *scene, size_t first,
                       uint32_t used) {
     bool kinds = sf_plan_has(&scene->plan, SF_STAGE_SCATTER);
     const float *scatter = scene->mesh_table.columns[SF_MESH_SCATTER];
     EACH_LANE {
-        uint32_t i = used >> l & 1u ? first + l : first;
+        size_t i = used >> l & 1u ? first + l : first;
         sf_scatter kind = kinds ? (sf_scatter)(int)scatter[b->surface[i]] : SF_SCATTER_DIFFUSE;
         view->faces[l] = kind == SF_SCATTER_DIFFUSE || kind == SF_SCATTER_ROUGH_CONDUCTOR ? 1.0f : 0.0f;
         for (int c = 0; c < 3; ++c) {
@@ -56,14 +57,14 @@ static void view_from(sf_tree_view *SF_RESTRICT view, const sf_batch *b, const s
 }
 
 /* The piece of the tree that was drawn with that probability. */
-static inline void take_chance(shape_lanes *lanes, uint32_t l, float chance) {
+static inline void take_chance(shape_lanes *lanes, size_t l, float chance) {
     lanes->field[SF_LIGHT_PDF][l] *= chance;
     for (int c = 0; c < 3; ++c) lanes->field[SF_LIGHT_WEIGHT_R + c][l] /= chance;
 }
 
 /* u is shared out first between the tree and the sky, if there is one. */
 static void choose_by_tree(shape_lanes *SF_RESTRICT lanes, const sf_batch *b, const sf_scene *scene, const float *u,
-                           uint32_t first, uint32_t count) {
+                           size_t first, uint32_t count) {
     const sf_light_table *lights = &scene->lights;
     uint32_t sky = (uint32_t)lights->sky_first;
     SF_ALIGNED(float) rest[SF_LANES], chance[SF_LANES];
@@ -149,7 +150,7 @@ static void draw_by_area(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_R
 }
 
 /* Ends a direction to a flat piece on its plane. */
-static inline void end_on_plane(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT d, uint32_t l,
+static inline void end_on_plane(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT d, size_t l,
                                 const float w[3], float share) {
     float height = 0, along = 0, end[3];
     for (int c = 0; c < 3; ++c) {
@@ -167,7 +168,7 @@ static inline void end_on_plane(const shape_lanes *SF_RESTRICT lanes, drawn_lane
     d->density[l] = (height > 0) & (along > 0) & (share > 0) ? 0.25f / (SF_PI_F * share) : 0.0f;
 }
 
-static inline void corners_of(const shape_lanes *SF_RESTRICT lanes, uint32_t l, float a[3], float b[3], float c[3]) {
+static inline void corners_of(const shape_lanes *SF_RESTRICT lanes, size_t l, float a[3], float b[3], float c[3]) {
     for (int k = 0; k < 3; ++k) {
         a[k] = lanes->field[SF_LIGHT_ORIGIN_X + k][l];
         b[k] = a[k] + lanes->field[SF_LIGHT_EDGE1_X + k][l];
@@ -215,7 +216,7 @@ static void draw_rectangles(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *S
 
 /* What a sphere is from a point: the unit vector to its middle, the distance, and the height of its
  * cone; 0 from inside. */
-static inline float see_sphere(const shape_lanes *SF_RESTRICT lanes, uint32_t l, float axis[3], float *distance) {
+static inline float see_sphere(const shape_lanes *SF_RESTRICT lanes, size_t l, float axis[3], float *distance) {
     float square = 0, radius = lanes->field[SF_LIGHT_EDGE1_X][l];
     for (int c = 0; c < 3; ++c) {
         axis[c] = lanes->field[SF_LIGHT_ORIGIN_X + c][l] - lanes->point[c][l];
@@ -231,7 +232,7 @@ static inline float see_sphere(const shape_lanes *SF_RESTRICT lanes, uint32_t l,
 
 /* A direction of the cone, and where it meets the sphere: by the law of sines, the angle at the
  * middle is asin(D sin theta / r) - theta. */
-static inline void draw_sphere(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT d, uint32_t l) {
+static inline void draw_sphere(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT d, size_t l) {
     float axis[3], tangent[3], bitangent[3], local[3], w[3], distance, radius = lanes->field[SF_LIGHT_EDGE1_X][l];
     float height = see_sphere(lanes, l, axis, &distance);
     sf_frame_from_normal(axis, tangent, bitangent);
@@ -256,7 +257,7 @@ static inline void draw_sphere(const shape_lanes *SF_RESTRICT lanes, drawn_lanes
 /* ---- the sky ---- */
 
 /* The shadow ray leaves the scene. */
-static inline void leave(drawn_lanes *SF_RESTRICT d, uint32_t l, const float w[3], float far, float density) {
+static inline void leave(drawn_lanes *SF_RESTRICT d, size_t l, const float w[3], float far, float density) {
     for (int c = 0; c < 3; ++c) {
         d->direction[c][l] = w[c];
         d->to[c][l] = far * w[c];
@@ -264,7 +265,7 @@ static inline void leave(drawn_lanes *SF_RESTRICT d, uint32_t l, const float w[3
     d->density[l] = density;
 }
 
-static inline void draw_sun(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT d, uint32_t l, float far) {
+static inline void draw_sun(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT d, size_t l, float far) {
     const float (*field)[SF_LANES] = lanes->field;
     const float tangent[3] = COPY3(field + SF_LIGHT_EDGE1_X, l), bitangent[3] = COPY3(field + SF_LIGHT_EDGE2_X, l);
     const float pole[3] = COPY3(field + SF_LIGHT_NORMAL_X, l);
@@ -274,7 +275,7 @@ static inline void draw_sun(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *S
     leave(d, l, w, far, 0.5f / (SF_PI_F * height));
 }
 
-static inline void draw_direction(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT d, uint32_t l,
+static inline void draw_direction(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT d, size_t l,
                                   float far) {
     const float w[3] = COPY3(lanes->field + SF_LIGHT_NORMAL_X, l);
     leave(d, l, w, far, 1);
@@ -282,7 +283,7 @@ static inline void draw_direction(const shape_lanes *SF_RESTRICT lanes, drawn_la
 
 /* A pixel in proportion to what comes from it, and a direction uniformly over its solid angle:
  * longitude, and the cosine from the top. */
-static inline void draw_pixel(const sf_sky *sky, drawn_lanes *SF_RESTRICT d, uint32_t l, const float x[2]) {
+static inline void draw_pixel(const sf_sky *sky, drawn_lanes *SF_RESTRICT d, size_t l, const float x[2]) {
     const sf_environment *e = &sky->environment;
     float right = x[0] * (float)e->width, down = x[1] * (float)e->height;
     uint32_t column = (uint32_t)right, row = (uint32_t)down;
@@ -328,8 +329,8 @@ static void draw(const shape_lanes *SF_RESTRICT lanes, const sf_sky *sky, drawn_
 
 /* What arrives if nothing is in between. A direction without width is found by no other ray. */
 static inline void connect(sf_batch *SF_RESTRICT b, const shape_lanes *SF_RESTRICT lanes,
-                           const drawn_lanes *SF_RESTRICT d, uint32_t first, uint32_t l, bool weigh) {
-    uint32_t i = first + l;
+                           const drawn_lanes *SF_RESTRICT d, size_t first, size_t l, bool weigh) {
+    size_t i = first + l;
     float cosine = d->direction[0][l] * b->normal[0][i] + d->direction[1][l] * b->normal[1][i] +
                    d->direction[2][l] * b->normal[2][i];
     float density = d->density[l], area = lanes->field[SF_LIGHT_AREA][l];
@@ -352,8 +353,8 @@ static inline void connect(sf_batch *SF_RESTRICT b, const shape_lanes *SF_RESTRI
 
 /* The same, whatever the surface makes of it. */
 static inline void connect_bare(sf_batch *SF_RESTRICT b, const shape_lanes *SF_RESTRICT lanes,
-                                const drawn_lanes *SF_RESTRICT d, uint32_t first, uint32_t l) {
-    uint32_t i = first + l;
+                                const drawn_lanes *SF_RESTRICT d, size_t first, size_t l) {
+    size_t i = first + l;
     float density = d->density[l], area = lanes->field[SF_LIGHT_AREA][l], sum = 0;
     float scale = density > 0 ? SF_PI_F / (density * area) : 0.0f; /* the weight has a diffuse surface's 1/pi */
     for (int c = 0; c < 3; ++c) {
@@ -371,31 +372,30 @@ static inline void connect_bare(sf_batch *SF_RESTRICT b, const shape_lanes *SF_R
 typedef enum connection { CONNECT_ALL, CONNECT_WEIGHTED, CONNECT_BARE } connection;
 
 static void connect_packet(sf_batch *SF_RESTRICT b, const shape_lanes *SF_RESTRICT lanes,
-                           const drawn_lanes *SF_RESTRICT d, uint32_t first, connection how) {
+                           const drawn_lanes *SF_RESTRICT d, size_t first, connection how) {
     if (how == CONNECT_BARE)
         EACH_LANE connect_bare(b, lanes, d, first, l);
     else if (how == CONNECT_WEIGHTED)
         EACH_LANE connect(b, lanes, d, first, l, true);
     else
         EACH_LANE connect(b, lanes, d, first, l, false);
-    EACH_LANE b->bin[first + l] = sf_shadow_bin(b, first + l, d->s[l], d->t[l]);
 }
 
 /* Lanes past the end hold nothing: they do as the first does. */
 static void take_packet(shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT d, const sf_batch *b,
-                        const sf_scene *scene, float (*u)[SF_PATHS], uint32_t first, uint32_t count) {
+                        const sf_scene *scene, float (*u)[SF_PATHS], size_t first, uint32_t count) {
     const sf_light_table *lights = &scene->lights;
     if (lights->tree)
         choose_by_tree(lanes, b, scene, u[2], first, count);
     else if (lights->count > 1)
         EACH_LANE {
-            uint32_t i = first + l < count ? first + l : first;
+            size_t i = first + l < count ? first + l : first;
             give_piece(lanes, l, lights->pieces[sf_choose_piece(lights, 0, u[2][i])]);
         }
     memcpy(d->s, u[0] + first, sizeof d->s);
     memcpy(d->t, u[1] + first, sizeof d->t);
     for (int c = 0; c < 3; ++c) memcpy(lanes->point[c], b->point[c] + first, sizeof lanes->point[c]);
-    for (uint32_t l = 1; l < SF_LANES; ++l) {
+    for (size_t l = 1; l < SF_LANES; ++l) {
         if (first + l < count) continue;
         d->s[l] = d->s[0];
         d->t[l] = d->t[0];
@@ -411,7 +411,7 @@ static void connect_all(sf_batch *b, const sf_scene *scene, uint32_t count, conn
     drawn_lanes drawn;
     memset(&drawn, 0, sizeof drawn);
     EACH_LANE give_piece(&lanes, l, lights->pieces[0]);
-    for (uint32_t first = 0; first < count; first += SF_LANES) {
+    for (size_t first = 0; first < count; first += SF_LANES) {
         take_packet(&lanes, &drawn, b, scene, u, first, count);
         choose_ways(&lanes);
         draw(&lanes, &scene->sky, &drawn);
@@ -429,7 +429,7 @@ static void bare_light(sf_batch *b, const sf_scene *scene, uint32_t count) {
 /* ---- light found ---- */
 
 /* The density by solid angle with which light sampling finds the point that ray i hit. */
-static void density_of_hits(const sf_batch *b, const shape_lanes *SF_RESTRICT lanes, uint32_t first,
+static void density_of_hits(const sf_batch *b, const shape_lanes *SF_RESTRICT lanes, size_t first,
                             const float cosine[SF_LANES], float *SF_RESTRICT out) {
     EACH_LANE {
         float square = b->distance[first + l] * b->distance[first + l];
@@ -462,14 +462,14 @@ static void density_of_hits(const sf_batch *b, const shape_lanes *SF_RESTRICT la
 }
 
 /* The cosine at what ray i hit, on the side that its normal points to. */
-static inline float hit_cosine(const sf_batch *b, uint32_t i) {
+static inline float hit_cosine(const sf_batch *b, size_t i) {
     float nx = b->hit_normal[0][i], ny = b->hit_normal[1][i], nz = b->hit_normal[2][i];
     float along = -(b->direction[0][i] * nx + b->direction[1][i] * ny + b->direction[2][i] * nz);
     return along / sqrtf(nx * nx + ny * ny + nz * nz);
 }
 
 /* Which of a packet's rays hit the side of a light that emits, and its emission. */
-static uint32_t list_emitters(sf_batch *b, const sf_scene *scene, uint32_t first, float cosine[SF_LANES]) {
+static uint32_t list_emitters(sf_batch *b, const sf_scene *scene, size_t first, float cosine[SF_LANES]) {
     SF_ALIGNED(float) sum[SF_LANES];
     uint32_t emitters = 0;
     EACH_LANE sum[l] = 0;
@@ -483,7 +483,7 @@ static uint32_t list_emitters(sf_batch *b, const sf_scene *scene, uint32_t first
 }
 
 /* The densities of what the rays hit, as from where they started: the vertices are what they were. */
-static void weigh_by_tree(shape_lanes *SF_RESTRICT lanes, const sf_batch *b, const sf_scene *scene, uint32_t first,
+static void weigh_by_tree(shape_lanes *SF_RESTRICT lanes, const sf_batch *b, const sf_scene *scene, size_t first,
                           uint32_t emitters) {
     const sf_light_table *lights = &scene->lights;
     SF_ALIGNED(float) chance[SF_LANES];
@@ -491,7 +491,7 @@ static void weigh_by_tree(shape_lanes *SF_RESTRICT lanes, const sf_batch *b, con
     sf_tree_view view;
     view_from(&view, b, scene, first, emitters);
     EACH_LANE {
-        uint32_t i = first + l;
+        size_t i = first + l;
         piece[l] = 0;
         if (emitters >> l & 1u) piece[l] = lights->of_primitive[lights->first_of_mesh[b->mesh[i]] + b->primitive[i]];
     }
@@ -499,7 +499,7 @@ static void weigh_by_tree(shape_lanes *SF_RESTRICT lanes, const sf_batch *b, con
     EACH_LANE lanes->field[SF_LIGHT_PDF][l] *= chance[l];
 }
 
-static void weigh_packet(sf_batch *b, const sf_scene *scene, uint32_t first, uint32_t emitters, sf_found_share share,
+static void weigh_packet(sf_batch *b, const sf_scene *scene, size_t first, uint32_t emitters, sf_found_share share,
                          const float cosine[SF_LANES]) {
     const sf_light_table *lights = &scene->lights;
     SF_ALIGNED(float) light_pdf[SF_LANES], weight[SF_LANES];
@@ -510,7 +510,8 @@ static void weigh_packet(sf_batch *b, const sf_scene *scene, uint32_t first, uin
     } else if (share == SF_FOUND_WEIGHTED) {
         shape_lanes lanes;
         EACH_LANE {
-            uint32_t i = first + l, piece = 0;
+            size_t i = first + l;
+            uint32_t piece = 0;
             if (emitters >> l & 1u) piece = lights->of_primitive[lights->first_of_mesh[b->mesh[i]] + b->primitive[i]];
             give_piece(&lanes, l, lights->pieces[piece]);
             for (int c = 0; c < 3; ++c) lanes.point[c][l] = b->origin[c][i];
@@ -525,7 +526,7 @@ static void weigh_packet(sf_batch *b, const sf_scene *scene, uint32_t first, uin
         EACH_LANE weight[l] = sf_found_weight(share, b->pdf[first + l], 0);
     EACH_LANE weight[l] = emitters >> l & 1u ? weight[l] : 0.0f;
     for (int c = 0; c < 3; ++c) EACH_LANE {
-            uint32_t i = first + l;
+            size_t i = first + l;
             b->emission[c][i] = weight[l] > 0 ? b->throughput[c][i] * b->emission[c][i] * weight[l] : 0.0f;
         }
 }
@@ -533,7 +534,7 @@ static void weigh_packet(sf_batch *b, const sf_scene *scene, uint32_t first, uin
 static void found(sf_batch *b, const sf_scene *scene, uint32_t count) {
     sf_found_share share = sf_share_found(&scene->plan);
     SF_ALIGNED(float) cosine[SF_LANES];
-    for (uint32_t first = 0; first < count; first += SF_LANES) {
+    for (size_t first = 0; first < count; first += SF_LANES) {
         uint32_t emitters = list_emitters(b, scene, first, cosine);
         if (emitters)
             weigh_packet(b, scene, first, emitters, share, cosine);

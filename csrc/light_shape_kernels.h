@@ -16,7 +16,7 @@ typedef struct sf_light_shape_kernels {
 
     /* Light sampled for surfaces of any kind: `contribution` without what the surface makes of it (a
      * diffuse one would scatter cosine / pi), `light_pdf` by solid angle, infinite for a direction
-     * that no ray finds; to_light, bin and `alive` as above. */
+     * that no ray finds; to_light and `alive` as above. */
     void (*bare_light)(sf_batch *batch, const sf_scene *scene, uint32_t count);
 
     /* Fills `emission` of surface rays, times throughput: the share of what they hit that light

@@ -5,13 +5,17 @@
 
 #include <string.h>
 
-#include "light_lanes.h"
 #include "rays.h"
 
+#define SHADOW_BINS 64   /* 4 quarters of a cell x 4 x 4 cells of the light */
 #define SURFACE_BINS 256 /* 8 octants of directions x 8 of the scene x 4 of slopes */
 
+/* In most batches all are: that takes no more than a look. */
 static uint32_t list_alive(sf_batch *b, uint32_t count) {
-    uint32_t kept = 0;
+    uint32_t kept = 0, all = 1;
+    for (uint32_t i = 0; i < count; ++i) all &= b->alive[i];
+    for (uint32_t i = 0; all && i < count; ++i) b->order[i] = i;
+    if (all) return count;
     for (uint32_t i = 0; i < count; ++i) {
         b->order[kept] = i;
         kept += b->alive[i];
@@ -46,11 +50,17 @@ static inline uint32_t list_by_bin(sf_batch *b, uint32_t count, uint32_t bins, u
     return place[bins - 2];
 }
 
-/* The rays that have no contribution get a bin of their own, the last. */
+/* By the quarter of the cell and the cell of the light: rays of a bin start close to each other and end
+ * close to each other. Those that have no contribution get a bin of their own, the last. */
 static uint32_t sort_shadow_rays(sf_batch *b, uint32_t count) {
-    uint32_t place[SF_SHADOW_BINS + 2] = {0};
-    for (uint32_t i = 0; i < count; ++i) b->bin[i] = b->alive[i] ? b->bin[i] : SF_SHADOW_BINS;
-    return list_by_bin(b, count, SF_SHADOW_BINS + 1, place);
+    uint32_t place[SHADOW_BINS + 2] = {0}, shift = 0;
+    while (b->width * SF_BLOCKS / 4 >> shift > 1) ++shift; /* paths of a quarter, a power of two */
+    float (*u)[SF_PATHS] = b->in_place ? b->coordinate : b->coordinate_by_ray;
+    for (uint32_t i = 0; i < count; ++i) {
+        uint32_t bin = (b->path[i] >> shift) * 16 + (uint32_t)(int)(u[0][i] * 4) * 4 + (uint32_t)(int)(u[1][i] * 4);
+        b->bin[i] = b->alive[i] ? bin : SHADOW_BINS;
+    }
+    return list_by_bin(b, count, SHADOW_BINS + 1, place);
 }
 
 /* First by the octant of the direction, as Embree traces the rays of a packet that lie in one together;

@@ -15,7 +15,8 @@ typedef struct sf_order_kernels {
     /* The same, then moves their vertices together. */
     uint32_t (*compact)(sf_batch *batch, uint32_t count);
 
-    /* Lists the shadow rays that have a contribution in `order`, bin by bin. Returns how many. */
+    /* Lists the shadow rays that have a contribution in `order`, bin by bin; the coordinates of their
+     * points of the light are still there. Returns how many. */
     uint32_t (*sort_shadow_rays)(sf_batch *batch, uint32_t count);
 
     /* Moves the surface rays, with what their paths carry, so that those of a packet start and go alike; drops

@@ -15,16 +15,18 @@
  * as most do, are filled without gathering. */
 static void look_up(const sf_mesh_table *table, int first, int columns, const uint32_t *mesh, uint32_t count,
                     float (*SF_RESTRICT out)[SF_PATHS]) {
-    for (uint32_t i = 0; i < count; i += SF_LANES) {
+    for (size_t i = 0; i < count; i += SF_LANES) {
         uint32_t different = 0;
-        for (uint32_t l = 0; l < SF_LANES; ++l) different |= mesh[i + l] ^ mesh[i];
+        SF_ROLLED
+        for (size_t l = 0; l < SF_LANES; ++l) different |= mesh[i + l] ^ mesh[i];
         for (int c = 0; c < columns; ++c) {
             const float *column = table->columns[first + c];
             if (different)
-                for (uint32_t l = 0; l < SF_LANES; ++l) out[c][i + l] = column[mesh[i + l]];
+                for (size_t l = 0; l < SF_LANES; ++l) out[c][i + l] = column[mesh[i + l]];
             else {
                 float value = column[mesh[i]];
-                for (uint32_t l = 0; l < SF_LANES; ++l) out[c][i + l] = value;
+                SF_ROLLED
+                for (size_t l = 0; l < SF_LANES; ++l) out[c][i + l] = value;
             }
         }
     }

@@ -98,6 +98,7 @@ static void nearest(sf_batch *b, const sf_scene *scene, uint32_t packets, const 
 /* Whether the list names 16 rays that lie one after another. */
 static inline bool are_together(const uint32_t *order) {
     uint32_t different = 0;
+    SF_ROLLED
     for (uint32_t l = 0; l < SF_LANES; ++l) different |= order[l] ^ (order[0] + l);
     return different == 0;
 }
@@ -106,12 +107,8 @@ static inline void pick(const float *SF_RESTRICT from, const uint32_t *SF_RESTRI
     for (uint32_t l = 0; l < SF_LANES; ++l) to[l] = from[order[l]];
 }
 
-static inline void pack_shadow_rays(float (*from)[SF_PATHS], float (*to)[SF_PATHS], const uint32_t *order,
-                                    struct RTCRay16 *rays) {
-    if (are_together(order)) {
-        copy_rays(from, to, order[0], rays);
-        return;
-    }
+static inline void pick_rays(float (*from)[SF_PATHS], float (*to)[SF_PATHS], const uint32_t *order,
+                             struct RTCRay16 *rays) {
     pick(from[0], order, rays->org_x);
     pick(from[1], order, rays->org_y);
     pick(from[2], order, rays->org_z);
@@ -124,11 +121,20 @@ static inline void pack_shadow_rays(float (*from)[SF_PATHS], float (*to)[SF_PATH
 static inline void trace_shadow_packet(sf_batch *b, const sf_scene *scene, float (*from)[SF_PATHS],
                                        struct RTCRay16 *rays, const uint32_t *order, uint32_t lanes) {
     SF_ALIGNED(int) valid[SF_LANES];
-    pack_shadow_rays(from, b->to_light, order, rays);
+    bool together = are_together(order);
+    if (together)
+        copy_rays(from, b->to_light, order[0], rays);
+    else
+        pick_rays(from, b->to_light, order, rays);
     for (uint32_t l = 0; l < SF_LANES; ++l) rays->tfar[l] = 1;
     set_valid(valid, lanes < SF_LANES ? (1u << lanes) - 1 : 0xffffu);
     sf_embree_occluded16(scene->embree, valid, rays, SF_INCOHERENT);
-    for (uint32_t l = 0; l < lanes; ++l) b->arrives[order[l]] = rays->tfar[l] > 0 ? 1.0f : 0.0f;
+    if (together) { /* then there are 16 */
+        float *arrives = b->arrives + order[0];
+        SF_ROLLED
+        for (uint32_t l = 0; l < SF_LANES; ++l) arrives[l] = rays->tfar[l] > 0 ? 1.0f : 0.0f;
+    } else
+        for (uint32_t l = 0; l < lanes; ++l) b->arrives[order[l]] = rays->tfar[l] > 0 ? 1.0f : 0.0f;
 }
 
 static void shadow(sf_batch *b, const sf_scene *scene, float (*from)[SF_PATHS], uint32_t count) {
