@@ -100,6 +100,7 @@ struct sf_film {
     uint64_t mask_hash;
     uint8_t untouched;                    /* the sf_stop_reason of pixels without a sample */
     double factors[SF_DYADIC_LEVELS + 1]; /* standard errors in a half-width, see sf_stop_factor */
+    double unseen;                        /* of the frame's level, that one sample may have missed; see stopping.c */
     sf_attribute *attributes;
     size_t attribute_count;
     sf_film_summary summary;
@@ -124,8 +125,6 @@ sf_status sf_film_create(const sf_render_options *options, bool masked, sf_film 
 static inline int sf_film_counts(const sf_film *film, uint32_t x, uint32_t y) {
     return !film->mask || film->mask[(size_t)y * film->crop_width + x];
 }
-
-/* The accumulators of row y of the crop. */
 
 /* Adds a block to its pixel; blocks of a pixel are added in the order of their base. */
 void sf_film_add(sf_film_pixel *pixel, const sf_block_statistics *block);

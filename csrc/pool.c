@@ -87,6 +87,7 @@ sf_status sf_pool_create(unsigned threads, sf_pool **out, sf_error *error) {
 }
 
 void sf_pool_run(sf_pool *pool, size_t count, sf_pool_work_fn work, sf_pool_wait_fn wait, void *user) {
+    if (count == 0) return;
     pthread_mutex_lock(&pool->mutex);
     pool->items = count;
     pool->work = work;

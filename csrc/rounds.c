@@ -145,7 +145,6 @@ static bool decide_pixel(sf_rounds *r, uint32_t x, uint32_t y, size_t state) {
     bool full = sf_film_taken(pixel) + o->start >= sf_rounds_most(r);
     if (o->start + sf_film_taken(pixel) > r->to && state == SF_RUNNING)
         return false;                                                  /* decided here before, by an easier tolerance */
-    if (o->spp && !full && state == SF_RUNNING) return false;          /* nothing to tell before the end */
     if (sf_film_taken(pixel) == 0 && state != SF_RUNNING) return true; /* not a page of it is touched; see close_all */
     pixel->half_width = sf_stop_half_width(r->film, o, x, y);
     bool met = !o->spp && summary->tolerance >= 0 && sf_film_taken(pixel) >= o->min_spp &&
@@ -211,6 +210,8 @@ static void decide(sf_rounds *r) {
     fix_tolerance(r);
     if (r->lap.levels && r->to == r->look && sf_stop_is_look(&r->options, r->look))
         sf_pool_run(r->pool, sf_stop_pool_count(r->film), look_at_pool, sf_rounds_wake, r);
+    if (r->options.spp && r->to < sf_rounds_most(r))
+        return; /* of a fixed count there is nothing to tell before its end */
     sf_pool_run(r->pool, r->tile_count, decide_tile, sf_rounds_wake, r);
 }
 

@@ -232,9 +232,7 @@ static inline float pooled_variance(const sf_film *film, uint32_t x, uint32_t y,
 /* Where 25 n samples around saw no difference, there may still be one that is rarer than that: by
  * the rule of three, its probability is below -log(1 - confidence) / (25 n). It is taken to be
  * of the size of the frame's level. */
-static double unseen(const sf_film *film, const sf_render_options *o, double n) {
-    return -(double)sf_log((float)(1 - o->confidence)) * film->summary.level / (25 * n);
-}
+static double unseen(const sf_film *film, double n) { return film->unseen * film->summary.level / (25 * n); }
 
 /* Over eight replicates of equal size; `factor` is Student's t with 7 degrees of freedom. */
 static float replicates_half_width(const sf_film *film, const sf_film_pixel *pixel, double factor) {
@@ -256,6 +254,7 @@ static float replicates_half_width(const sf_film *film, const sf_film_pixel *pix
 /* The variance of a pixel is told from the differences of nine: nine for each pair. Student's t of as
  * many degrees of freedom stands for what is not known of it. */
 void sf_stop_set_factors(sf_film *film, const sf_render_options *o) {
+    film->unseen = -(double)sf_log((float)(1 - o->confidence));
     film->factors[0] = sf_normal_factor(o->confidence);
     if (o->stop == SF_STOP_REPLICATES) film->factors[0] = sf_student_t_factor(o->confidence, SF_REPLICATES - 1);
     for (unsigned levels = 1; levels <= LEVELS; ++levels)
@@ -274,7 +273,7 @@ float sf_stop_half_width(const sf_film *film, const sf_render_options *o, uint32
         return replicates_half_width(film, pixel, factor);
     if (o->stop != SF_STOP_DYADIC || !pixel->look) return sf_film_half_width(pixel, factor);
     double half_width = factor * sqrt((double)pooled_variance(film, x, y, false));
-    double least = unseen(film, o, (double)(SF_LANES << pixel->look));
+    double least = unseen(film, (double)(SF_LANES << pixel->look));
     return (float)(half_width > least ? half_width : least);
 }
 
