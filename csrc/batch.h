@@ -55,7 +55,7 @@ typedef struct sf_batch {
 
     float point[3][SF_PATHS];  /* the vertex, moved off its surface */
     float normal[3][SF_PATHS]; /* facing the side the ray came from */
-    float albedo[3][SF_PATHS]; /* or 1: what the surface passes on, whatever the directions */
+    float albedo[3][SF_PATHS]; /* of later vertices, or 1: what the surface passes on, whatever the directions */
     float emission[3][SF_PATHS];
     float light_pdf[SF_PATHS];
     uint32_t alive[SF_PATHS]; /* 1 where the path goes on */

@@ -45,15 +45,26 @@ static void apply_filter(sf_batch *b, sf_pixel_filter filter) {
 }
 
 /* Directions through the pixels: forward + x right + y up, before they are normalized. */
-static void aim(sf_batch *b, const sf_camera_frame *camera) {
-    for (uint32_t block = 0; block < b->block_count; ++block) {
-        float left = (float)b->blocks[block].x - camera->half_width,
-              top = camera->half_height - (float)b->blocks[block].y;
-        for (uint32_t i = block * b->width; i < (block + 1) * b->width; ++i) {
-            float x = (left + b->coordinate[0][i]) * camera->pixel, y = (top - b->coordinate[1][i]) * camera->pixel;
-            for (int c = 0; c < 3; ++c)
-                b->direction[c][i] = camera->forward[c] + x * camera->right[c] + y * camera->up[c];
+static inline void aim_blocks(sf_batch *b, const sf_camera_frame *camera, size_t width) {
+    const sf_camera_frame frame = *camera;
+    for (size_t block = 0; block < b->block_count; ++block) {
+        float left = (float)b->blocks[block].x - frame.half_width, top = frame.half_height - (float)b->blocks[block].y;
+        for (size_t l = 0; l < width; ++l) {
+            size_t i = block * width + l;
+            float x = (left + b->coordinate[0][i]) * frame.pixel, y = (top - b->coordinate[1][i]) * frame.pixel;
+            for (int c = 0; c < 3; ++c) b->direction[c][i] = frame.forward[c] + x * frame.right[c] + y * frame.up[c];
         }
+    }
+}
+
+/* Each width with loops of its own. */
+static void aim(sf_batch *b, const sf_camera_frame *camera) {
+    switch (b->width) {
+        case 1: aim_blocks(b, camera, 1); break;
+        case 2: aim_blocks(b, camera, 2); break;
+        case 4: aim_blocks(b, camera, 4); break;
+        case 8: aim_blocks(b, camera, 8); break;
+        default: aim_blocks(b, camera, SF_LANES); break;
     }
 }
 

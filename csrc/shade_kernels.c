@@ -11,79 +11,101 @@
 
 /* ---- what the meshes hold ---- */
 
-/* Reads `columns` columns of the mesh table, one value a ray; packets that hit a single mesh,
- * as most do, are filled without gathering. */
-static void look_up(const sf_mesh_table *table, int first, int columns, const uint32_t *mesh, uint32_t count,
-                    float (*SF_RESTRICT out)[SF_PATHS]) {
-    for (size_t i = 0; i < count; i += SF_LANES) {
-        uint32_t different = 0;
-        SF_ROLLED
-        for (size_t l = 0; l < SF_LANES; ++l) different |= mesh[i + l] ^ mesh[i];
-        for (int c = 0; c < columns; ++c) {
-            const float *column = table->columns[first + c];
-            if (different)
-                for (size_t l = 0; l < SF_LANES; ++l) out[c][i + l] = column[mesh[i + l]];
-            else {
-                float value = column[mesh[i]];
-                SF_ROLLED
-                for (size_t l = 0; l < SF_LANES; ++l) out[c][i + l] = value;
-            }
-        }
+/* Whether all rays of a packet hit the same mesh, as most packets' do. */
+static inline bool hits_one_mesh(const uint32_t mesh[SF_LANES]) {
+    uint32_t different = 0;
+    SF_ROLLED
+    for (size_t l = 0; l < SF_LANES; ++l) different |= mesh[l] ^ mesh[0];
+    return different == 0;
+}
+
+/* Reads `columns` columns of the mesh table for the packet from ray `i` on; without gathering where it
+ * hit one mesh. */
+static inline void look_up_packet(const sf_mesh_table *table, int first, int columns, const uint32_t *mesh, size_t i,
+                                  float (*SF_RESTRICT out)[SF_PATHS]) {
+    bool one = hits_one_mesh(mesh + i);
+    for (int c = 0; c < columns; ++c) {
+        const float *column = table->columns[first + c];
+        if (one) {
+            float value = column[mesh[i]];
+            SF_ROLLED
+            for (size_t l = 0; l < SF_LANES; ++l) out[c][i + l] = value;
+        } else
+            for (size_t l = 0; l < SF_LANES; ++l) out[c][i + l] = column[mesh[i + l]];
     }
 }
 
-/* 1 where the ray comes from the side that the geometric normal points to, else 0. */
-static inline float front_side(const sf_batch *b, uint32_t i) {
-    float along = b->direction[0][i] * b->hit_normal[0][i] + b->direction[1][i] * b->hit_normal[1][i] +
-                  b->direction[2][i] * b->hit_normal[2][i];
-    return along < 0 ? 1.0f : 0.0f;
+static void look_up(const sf_mesh_table *table, int first, int columns, const uint32_t *mesh, uint32_t count,
+                    float (*SF_RESTRICT out)[SF_PATHS]) {
+    for (size_t i = 0; i < count; i += SF_LANES) look_up_packet(table, first, columns, mesh, i, out);
+}
+
+/* How far the ray goes along the geometric normal: below 0 where it comes from the side that this points to. */
+static inline float along_normal(const sf_batch *b, size_t i) {
+    return b->direction[0][i] * b->hit_normal[0][i] + b->direction[1][i] * b->hit_normal[1][i] +
+           b->direction[2][i] * b->hit_normal[2][i];
+}
+
+/* What a packet of camera rays sees of lights: nothing, mostly. */
+static inline void see_emission(sf_batch *b, const sf_mesh_table *table, size_t first) {
+    const float *red = table->columns[SF_MESH_EMISSION_R], *green = table->columns[SF_MESH_EMISSION_G],
+                *blue = table->columns[SF_MESH_EMISSION_B];
+    uint32_t mesh = b->mesh[first];
+    if (hits_one_mesh(b->mesh + first) && !(red[mesh] + green[mesh] + blue[mesh] > 0)) {
+        for (int c = 0; c < 3; ++c) memset(b->radiance[c] + first, 0, SF_LANES * sizeof(float));
+        return;
+    }
+    look_up_packet(table, SF_MESH_EMISSION_R, 3, b->mesh, first, b->radiance);
+    for (size_t i = first; i < first + SF_LANES; ++i) {
+        float front = along_normal(b, i) < 0 ? 1.0f : 0.0f;
+        for (int c = 0; c < 3; ++c) b->radiance[c][i] = b->covered[i] > 0 ? front * b->radiance[c][i] : 0.0f;
+    }
 }
 
 static void first_radiance(sf_batch *b, const sf_scene *scene) {
     uint32_t n = sf_batch_paths(b), miss = scene->mesh_table.miss;
     for (uint32_t i = 0; i < n; ++i) b->covered[i] = b->mesh[i] == miss ? 0.0f : 1.0f;
-    if (sf_plan_has(&scene->plan, SF_STAGE_EMISSION)) {
-        look_up(&scene->mesh_table, SF_MESH_EMISSION_R, 3, b->mesh, n, b->emission);
-        for (uint32_t i = 0; i < n; ++i) {
-            float front = front_side(b, i);
-            for (int c = 0; c < 3; ++c) b->radiance[c][i] = b->covered[i] > 0 ? front * b->emission[c][i] : 0.0f;
-        }
-    } else
+    if (sf_plan_has(&scene->plan, SF_STAGE_EMISSION))
+        for (size_t first = 0; first < n; first += SF_LANES) see_emission(b, &scene->mesh_table, first);
+    else
         for (int c = 0; c < 3; ++c) memset(b->radiance[c], 0, n * sizeof(float));
     if (sf_plan_has(&scene->plan, SF_STAGE_MISS))
         for (uint32_t i = 0; i < n; ++i)
             for (int c = 0; c < 3; ++c) b->radiance[c][i] += b->covered[i] > 0 ? 0.0f : scene->background[c];
 }
 
-static void later_emission(sf_batch *b, const sf_scene *scene, uint32_t n) {
-    look_up(&scene->mesh_table, SF_MESH_EMISSION_R, 3, b->mesh, n, b->emission);
-    look_up(&scene->mesh_table, SF_MESH_LIGHT_PDF, 1, b->mesh, n, &b->light_pdf);
-    for (uint32_t i = 0; i < n; ++i) {
-        float nx = b->hit_normal[0][i], ny = b->hit_normal[1][i], nz = b->hit_normal[2][i];
-        float along = -(b->direction[0][i] * nx + b->direction[1][i] * ny + b->direction[2][i] * nz);
-        float cosine = along / sqrtf(nx * nx + ny * ny + nz * nz);
-        /* Density by area to density by solid angle: times distance^2 / cosine. */
-        float light_pdf = b->light_pdf[i] * b->distance[i] * b->distance[i] / cosine;
-        float weight = sf_power_weight(b->pdf[i], light_pdf);
-        for (int c = 0; c < 3; ++c)
-            b->emission[c][i] =
-                (along > 0) & (b->light_pdf[i] > 0) ? b->throughput[c][i] * b->emission[c][i] * weight : 0.0f;
-    }
+/* Adds the light that ray i hit, weighted against sampling it. */
+static inline void add_hit_light(sf_batch *b, const sf_mesh_table *table, uint32_t i) {
+    float nx = b->hit_normal[0][i], ny = b->hit_normal[1][i], nz = b->hit_normal[2][i];
+    float along = -along_normal(b, i);
+    if (!(along > 0)) return;
+    float cosine = along / sqrtf(nx * nx + ny * ny + nz * nz);
+    /* Density by area to density by solid angle: times distance^2 / cosine. */
+    float weight = sf_power_weight(b->pdf[i], b->light_pdf[i] * b->distance[i] * b->distance[i] / cosine);
+    for (int c = 0; c < 3; ++c)
+        b->radiance[c][b->path[i]] += b->throughput[c][i] * table->columns[SF_MESH_EMISSION_R + c][b->mesh[i]] * weight;
 }
 
+/* The rays that found light are few: they are listed, and taken one by one. */
 static void later_radiance(sf_batch *b, const sf_scene *scene, uint32_t count) {
-    uint32_t n = sf_whole_packets(count), miss = scene->mesh_table.miss;
+    uint32_t n = sf_whole_packets(count), miss = scene->mesh_table.miss, found = 0;
     bool emission = sf_plan_has(&scene->plan, SF_STAGE_EMISSION), background = sf_plan_has(&scene->plan, SF_STAGE_MISS);
     if (!emission && !background) return;
     if (emission)
-        later_emission(b, scene, n);
+        look_up(&scene->mesh_table, SF_MESH_LIGHT_PDF, 1, b->mesh, n, &b->light_pdf);
     else
-        for (int c = 0; c < 3; ++c) memset(b->emission[c], 0, n * sizeof(float));
-    if (background)
-        for (uint32_t i = 0; i < n; ++i)
-            for (int c = 0; c < 3; ++c)
-                b->emission[c][i] = b->mesh[i] == miss ? b->throughput[c][i] * scene->background[c] : b->emission[c][i];
-    sf_add_by_path(b, b->emission, count);
+        memset(b->light_pdf, 0, n * sizeof(float));
+    for (uint32_t i = 0; i < count; ++i) {
+        b->order[found] = i;
+        found += (uint32_t)(b->light_pdf[i] > 0) | ((uint32_t)background & (uint32_t)(b->mesh[i] == miss));
+    }
+    for (uint32_t k = 0; k < found; ++k) {
+        uint32_t i = b->order[k];
+        if (b->mesh[i] != miss)
+            add_hit_light(b, &scene->mesh_table, i);
+        else
+            for (int c = 0; c < 3; ++c) b->radiance[c][b->path[i]] += b->throughput[c][i] * scene->background[c];
+    }
 }
 
 /* ---- vertices ---- */
@@ -113,28 +135,25 @@ static inline void place_vertex(sf_batch *b, uint32_t i, float least, float back
     b->normal[2][i] = nz;
 }
 
-static void place_vertices(sf_batch *b, const sf_scene *scene, uint32_t n) {
-    look_up(&scene->mesh_table, SF_MESH_PASS_R, 3, b->mesh, n, b->albedo);
+/* `pass`: what the surfaces pass on. */
+static void place_vertices(sf_batch *b, const sf_scene *scene, uint32_t n, float (*pass)[SF_PATHS]) {
+    look_up(&scene->mesh_table, SF_MESH_PASS_R, 3, b->mesh, n, pass);
     look_up(&scene->mesh_table, SF_MESH_LIFT, 1, b->mesh, n, &b->gather);
     for (uint32_t i = 0; i < n; ++i) place_vertex(b, i, b->gather[i], scene->back);
 }
 
 static void first_vertex(sf_batch *b, const sf_scene *scene) {
     uint32_t n = sf_batch_paths(b);
-    place_vertices(b, scene, n);
+    place_vertices(b, scene, n, b->throughput);
     for (uint32_t i = 0; i < n; ++i) {
-        float r = b->albedo[0][i], g = b->albedo[1][i], blue = b->albedo[2][i];
-        b->throughput[0][i] = r;
-        b->throughput[1][i] = g;
-        b->throughput[2][i] = blue;
         b->path[i] = i;
-        b->alive[i] = r + g + blue > 0;
+        b->alive[i] = b->throughput[0][i] + b->throughput[1][i] + b->throughput[2][i] > 0;
     }
 }
 
 static void later_vertex(sf_batch *b, const sf_scene *scene, uint32_t count) {
     uint32_t n = sf_whole_packets(count);
-    place_vertices(b, scene, n);
+    place_vertices(b, scene, n, b->albedo);
     for (uint32_t i = 0; i < n; ++i) {
         float r = b->throughput[0][i] *= b->albedo[0][i];
         float g = b->throughput[1][i] *= b->albedo[1][i];

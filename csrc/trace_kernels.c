@@ -117,19 +117,20 @@ static inline void pick_rays(float (*from)[SF_PATHS], float (*to)[SF_PATHS], con
     pick(to[2], order, rays->dir_z);
 }
 
-/* Traces the first `lanes` of the rays that the list names next. */
 static inline void trace_shadow_packet(sf_batch *b, const sf_scene *scene, float (*from)[SF_PATHS],
                                        struct RTCRay16 *rays, const uint32_t *order, uint32_t lanes) {
     SF_ALIGNED(int) valid[SF_LANES];
-    bool together = are_together(order);
-    if (together)
+    if (are_together(order))
         copy_rays(from, b->to_light, order[0], rays);
     else
         pick_rays(from, b->to_light, order, rays);
     for (uint32_t l = 0; l < SF_LANES; ++l) rays->tfar[l] = 1;
     set_valid(valid, lanes < SF_LANES ? (1u << lanes) - 1 : 0xffffu);
     sf_embree_occluded16(scene->embree, valid, rays, SF_INCOHERENT);
-    if (together) { /* then there are 16 */
+}
+
+static inline void take_arrivals(sf_batch *b, const struct RTCRay16 *rays, const uint32_t *order, uint32_t lanes) {
+    if (are_together(order)) { /* then there are 16 */
         float *arrives = b->arrives + order[0];
         SF_ROLLED
         for (uint32_t l = 0; l < SF_LANES; ++l) arrives[l] = rays->tfar[l] > 0 ? 1.0f : 0.0f;
@@ -137,14 +138,24 @@ static inline void trace_shadow_packet(sf_batch *b, const sf_scene *scene, float
         for (uint32_t l = 0; l < lanes; ++l) b->arrives[order[l]] = rays->tfar[l] > 0 ? 1.0f : 0.0f;
 }
 
+static inline uint32_t lanes_from(uint32_t first, uint32_t count) {
+    return count - first < SF_LANES ? count - first : SF_LANES;
+}
+
+/* A packet's answers are read after the next is traced: right after Embree's masked stores they would be
+ * waited for. */
 static void shadow(sf_batch *b, const sf_scene *scene, float (*from)[SF_PATHS], uint32_t count) {
-    SF_ALIGNED(struct RTCRay16) rays;
+    SF_ALIGNED(struct RTCRay16) rays[2];
     memset(&rays, 0, sizeof rays);
-    memset(rays.mask, 0xff, sizeof rays.mask);
+    for (int k = 0; k < 2; ++k) memset(rays[k].mask, 0xff, sizeof rays[k].mask);
     for (uint32_t i = count; i < sf_whole_packets(count); ++i) b->order[i] = b->order[0];
-    for (uint32_t first = 0; first < count; first += SF_LANES)
-        trace_shadow_packet(b, scene, from, &rays, b->order + first,
-                            count - first < SF_LANES ? count - first : SF_LANES);
+    for (uint32_t first = 0, turn = 0; first < count + SF_LANES; first += SF_LANES, turn ^= 1) {
+        if (first < count) trace_shadow_packet(b, scene, from, rays + turn, b->order + first, lanes_from(first, count));
+        if (first > 0) {
+            uint32_t before = first - SF_LANES;
+            take_arrivals(b, rays + (turn ^ 1), b->order + before, lanes_from(before, count));
+        }
+    }
 }
 
 const sf_trace_kernels SF_AT_LEVEL(sf_trace_kernels) = {nearest, shadow};
