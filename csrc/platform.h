@@ -95,13 +95,6 @@ static inline void sf_stream_end(void) {
 #endif
 }
 
-/* Asks for memory that will be written before long. */
-static inline void sf_prefetch(const void *memory, size_t bytes) {
-    const char *first = (const char *)memory;
-    for (size_t i = 0; i < bytes; i += 64) __builtin_prefetch(first + i, 1);
-    __builtin_prefetch(first + bytes - 1, 1);
-}
-
 /* A counter that threads advance together. */
 typedef struct sf_atomic_size {
     size_t value;

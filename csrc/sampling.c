@@ -115,7 +115,6 @@ static void sample_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
             if (!(active >> m & 1u)) continue;
             uint32_t first = skip_taken(r, cell, m, n);
             if (first >= block_end(r, n)) continue;
-            if (n == r->from) sf_prefetch(sf_rounds_pixel(r, cell, m), sizeof(sf_film_pixel));
             batch->blocks[batch->block_count++] = make_block(r, x + sf_cell_x(m), y + sf_cell_y(m), keys[m], first);
             if (batch->block_count < SF_BLOCKS) continue;
             flush_batch(r, worker);

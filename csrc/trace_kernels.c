@@ -146,7 +146,7 @@ static inline uint32_t lanes_from(uint32_t first, uint32_t count) {
  * waited for. */
 static void shadow(sf_batch *b, const sf_scene *scene, float (*from)[SF_PATHS], uint32_t count) {
     SF_ALIGNED(struct RTCRay16) rays[2];
-    memset(&rays, 0, sizeof rays);
+    memset(rays, 0, sizeof rays);
     for (int k = 0; k < 2; ++k) memset(rays[k].mask, 0xff, sizeof rays[k].mask);
     for (uint32_t i = count; i < sf_whole_packets(count); ++i) b->order[i] = b->order[0];
     for (uint32_t first = 0, turn = 0; first < count + SF_LANES; first += SF_LANES, turn ^= 1) {
