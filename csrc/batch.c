@@ -95,7 +95,7 @@ static void trace_camera(run *r) {
     sf_camera_kernels_at(r->context->isa)
         ->camera(b, &r->context->camera, r->context->filter, lens ? b->coordinate_by_ray : NULL);
     begin(r, SF_WORK_CAMERA_RAYS);
-    trace_nearest(r, paths / SF_LANES, active, SF_COHERENT);
+    trace_nearest(r, paths / SF_LANES, active, SF_STREAM);
     begin(r, SF_WORK_VERTICES);
     if (b->hit_sums) sf_aov_gather(b, r->context);
     if (has(r, SF_STAGE_FOG)) drift(r, paths);

@@ -5,45 +5,68 @@
 #ifndef SUNFLECK_EMBREE_H
 #define SUNFLECK_EMBREE_H
 
+#include <stdbool.h>
+
+#include "platform.h"
+
 #if SF_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
 #else
 #include <embree3/rtcore.h>
 #endif
 
-/* How alike the rays of a packet are; Embree picks its traversal by it. */
-typedef enum sf_coherence { SF_COHERENT, SF_INCOHERENT } sf_coherence;
+/* How alike rays are; Embree picks its traversal by it. A stream: those of several packets, as all are of
+ * one camera. */
+typedef enum sf_coherence { SF_STREAM, SF_COHERENT, SF_INCOHERENT } sf_coherence;
 
-/* The nearest hits of 16 rays, of those whose `valid` is -1. */
-static inline void sf_embree_intersect16(RTCScene scene, const int *valid, struct RTCRayHit16 *rays,
+/* -1 for the rays that are wanted: those whose end is not below 0. */
+static inline void sf_embree_choose(const float tfar[16], int valid[16]) {
+    SF_ROLLED
+    for (int l = 0; l < 16; ++l) valid[l] = tfar[l] < 0 ? 0 : -1;
+}
+
+/* The nearest hits of packets of 16 rays, of those wanted. Embree 3 takes a stream as a
+ * whole; Embree 4 has none. */
+static inline void sf_embree_intersect16(RTCScene scene, struct RTCRayHit16 *rays, unsigned packets,
                                          sf_coherence coherence) {
+    bool alike = coherence != SF_INCOHERENT;
 #if SF_EMBREE_MAJOR >= 4
     struct RTCIntersectArguments arguments;
     rtcInitIntersectArguments(&arguments);
-    arguments.flags = coherence == SF_COHERENT ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
-    rtcIntersect16(valid, scene, rays, &arguments);
+    arguments.flags = alike ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
 #else
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags =
-        coherence == SF_COHERENT ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    rtcIntersect16(valid, scene, &context, rays);
+    context.flags = alike ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    if (coherence == SF_STREAM) {
+        rtcIntersectNM(scene, &context, (struct RTCRayHitN *)rays, 16, packets, sizeof *rays);
+        return;
+    }
 #endif
+    for (unsigned p = 0; p < packets; ++p) {
+        SF_ALIGNED(int) valid[16];
+        sf_embree_choose(rays[p].ray.tfar, valid);
+#if SF_EMBREE_MAJOR >= 4
+        rtcIntersect16(valid, scene, rays + p, &arguments);
+#else
+        rtcIntersect16(valid, scene, &context, rays + p);
+#endif
+    }
 }
 
-/* Whether anything lies between the ends of 16 rays: tfar becomes -infinity where it does. */
-static inline void sf_embree_occluded16(RTCScene scene, const int *valid, struct RTCRay16 *rays,
-                                        sf_coherence coherence) {
+/* Whether anything lies between the ends of 16 rays, of those wanted: tfar becomes -infinity where it does. */
+static inline void sf_embree_occluded16(RTCScene scene, struct RTCRay16 *rays) {
+    SF_ALIGNED(int) valid[16];
+    sf_embree_choose(rays->tfar, valid);
 #if SF_EMBREE_MAJOR >= 4
     struct RTCOccludedArguments arguments;
     rtcInitOccludedArguments(&arguments);
-    arguments.flags = coherence == SF_COHERENT ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+    arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
     rtcOccluded16(valid, scene, rays, &arguments);
 #else
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags =
-        coherence == SF_COHERENT ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     rtcOccluded16(valid, scene, &context, rays);
 #endif
 }

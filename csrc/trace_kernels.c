@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-/* Rays to Embree and back, in packets of 16. The width and the flags of a stage never change while a
- * scene is rendered, so that Embree's answers do not depend on which rays share a packet. */
+/* Rays to Embree and back, in packets of 16; those of the camera 16 packets at a time. The width and the flags of a
+ * stage never change while a scene is rendered, so that Embree's answers do not depend on which rays share a packet. */
 
 #include "trace_kernels.h"
 
@@ -11,20 +11,18 @@
 
 #include "rays.h"
 
-static inline void set_valid(int valid[SF_LANES], uint32_t bits) {
-    for (uint32_t l = 0; l < SF_LANES; ++l) valid[l] = -(int)(bits >> l & 1u);
-}
-
-static void take_hits(sf_batch *b, const sf_scene *scene, const struct RTCRayHit16 *rays, uint32_t first) {
+static void take_hits(sf_batch *b, const sf_scene *scene, const struct RTCRayHit16 *rays, size_t first) {
     float scale = scene->normal_scale;
     uint32_t miss = scene->mesh_table.miss;
     memcpy(b->distance + first, rays->ray.tfar, sizeof rays->ray.tfar);
-    for (int l = 0; l < SF_LANES; ++l) {
+    SF_ROLLED
+    for (size_t l = 0; l < SF_LANES; ++l) {
         b->hit_normal[0][first + l] = rays->hit.Ng_x[l] * scale;
         b->hit_normal[1][first + l] = rays->hit.Ng_y[l] * scale;
         b->hit_normal[2][first + l] = rays->hit.Ng_z[l] * scale;
     }
-    for (int l = 0; l < SF_LANES; ++l) {
+    SF_ROLLED
+    for (size_t l = 0; l < SF_LANES; ++l) {
         uint32_t mesh = rays->hit.geomID[l];
         b->mesh[first + l] = mesh < miss ? mesh : miss;
     }
@@ -34,7 +32,7 @@ static void take_hits(sf_batch *b, const sf_scene *scene, const struct RTCRayHit
 
 /* The same where there are instances. Embree gives the instance, the number of its first mesh, and the
  * mesh within it; its normals are the prototype's. */
-static void take_placed_hits(sf_batch *b, const sf_scene *scene, const struct RTCRayHit16 *rays, uint32_t first) {
+static void take_placed_hits(sf_batch *b, const sf_scene *scene, const struct RTCRayHit16 *rays, size_t first) {
     uint32_t miss = scene->mesh_table.miss;
     memcpy(b->distance + first, rays->ray.tfar, sizeof rays->ray.tfar);
     for (int l = 0; l < SF_LANES; ++l) {
@@ -60,38 +58,33 @@ static inline void copy_rays(float (*from)[SF_PATHS], float (*to)[SF_PATHS], uin
     memcpy(rays->dir_z, to[2] + first, sizeof rays->dir_z);
 }
 
-/* Traces a packet whose masks and times are set. */
-static inline void trace_packet(sf_batch *b, const sf_scene *scene, struct RTCRayHit16 *rays, uint32_t first,
-                                uint32_t active, sf_coherence coherence) {
-    SF_ALIGNED(int) valid[SF_LANES];
+#define STREAM 8 /* packets */
+
+/* The packet's rays, those that are not wanted with an end before their beginning. */
+static inline void pack_rays(sf_batch *b, struct RTCRayHit16 *rays, uint32_t first, uint32_t wanted) {
     copy_rays(b->origin, b->direction, first, &rays->ray);
-    for (int l = 0; l < SF_LANES; ++l) rays->ray.tfar[l] = INFINITY;
+    SF_ROLLED
+    for (uint32_t l = 0; l < SF_LANES; ++l) rays->ray.tfar[l] = wanted >> l & 1u ? INFINITY : -1.0f;
     memset(rays->hit.geomID, 0xff, sizeof rays->hit.geomID);
     memset(rays->hit.instID, 0xff, sizeof rays->hit.instID);
-    set_valid(valid, active);
-    sf_embree_intersect16(scene->embree, valid, rays, coherence);
-}
-
-static void trace_placed(sf_batch *b, const sf_scene *scene, struct RTCRayHit16 *rays, uint32_t packets,
-                         const uint32_t *active, sf_coherence coherence) {
-    for (uint32_t p = 0; p < packets; ++p) {
-        trace_packet(b, scene, rays, p * SF_LANES, active[p], coherence);
-        take_placed_hits(b, scene, rays, p * SF_LANES);
-    }
 }
 
 static void nearest(sf_batch *b, const sf_scene *scene, uint32_t packets, const uint32_t *active,
                     sf_coherence coherence) {
-    SF_ALIGNED(struct RTCRayHit16) rays;
-    memset(&rays, 0, sizeof rays);
-    memset(rays.ray.mask, 0xff, sizeof rays.ray.mask);
-    if (sf_plan_has(&scene->plan, SF_STAGE_INSTANCES)) {
-        trace_placed(b, scene, &rays, packets, active, coherence);
-        return;
-    }
-    for (uint32_t p = 0; p < packets; ++p) {
-        trace_packet(b, scene, &rays, p * SF_LANES, active[p], coherence);
-        take_hits(b, scene, &rays, p * SF_LANES);
+    SF_ALIGNED(struct RTCRayHit16) rays[STREAM];
+    bool placed = sf_plan_has(&scene->plan, SF_STAGE_INSTANCES);
+    uint32_t most = coherence == SF_STREAM ? STREAM : 1;
+    memset(rays, 0, most * sizeof *rays);
+    for (uint32_t k = 0; k < most; ++k) memset(rays[k].ray.mask, 0xff, sizeof rays[k].ray.mask);
+    for (uint32_t first = 0; first < packets; first += most) {
+        uint32_t some = packets - first < most ? packets - first : most;
+        for (uint32_t k = 0; k < some; ++k) pack_rays(b, rays + k, (first + k) * SF_LANES, active[first + k]);
+        sf_embree_intersect16(scene->embree, rays, some, coherence);
+        for (uint32_t k = 0; k < some; ++k)
+            if (placed)
+                take_placed_hits(b, scene, rays + k, (first + k) * SF_LANES);
+            else
+                take_hits(b, scene, rays + k, (first + k) * SF_LANES);
     }
 }
 
@@ -119,14 +112,13 @@ static inline void pick_rays(float (*from)[SF_PATHS], float (*to)[SF_PATHS], con
 
 static inline void trace_shadow_packet(sf_batch *b, const sf_scene *scene, float (*from)[SF_PATHS],
                                        struct RTCRay16 *rays, const uint32_t *order, uint32_t lanes) {
-    SF_ALIGNED(int) valid[SF_LANES];
     if (are_together(order))
         copy_rays(from, b->to_light, order[0], rays);
     else
         pick_rays(from, b->to_light, order, rays);
-    for (uint32_t l = 0; l < SF_LANES; ++l) rays->tfar[l] = 1;
-    set_valid(valid, lanes < SF_LANES ? (1u << lanes) - 1 : 0xffffu);
-    sf_embree_occluded16(scene->embree, valid, rays, SF_INCOHERENT);
+    SF_ROLLED
+    for (uint32_t l = 0; l < SF_LANES; ++l) rays->tfar[l] = l < lanes ? 1.0f : -1.0f;
+    sf_embree_occluded16(scene->embree, rays);
 }
 
 static inline void take_arrivals(sf_batch *b, const struct RTCRay16 *rays, const uint32_t *order, uint32_t lanes) {
