@@ -139,7 +139,7 @@ static void test_a_render_stopped_at_any_round_ends_as_one_that_never_stopped(vo
         uint32_t rounds = sf_film_summarize(whole).rounds;
         if (rounds < 3) fail_msg("kind %d has %u rounds", kind, rounds);
         options.checkpoint_path = FILE_NAME;
-        for (uint32_t stop = 1; stop < rounds; stop += 1 + TEST_STRIDE / 8) {
+        for (uint32_t stop = 1; stop < rounds; stop += 1 + TEST_STRIDE / 4) {
             remove_file();
             options.threads = 1 + stop % 3;
             options.tile_size = 8u << stop % 2;

@@ -230,8 +230,11 @@ def test_a_full_file_system_keeps_the_old_file(penumbra: sf.Scene, small_disk: P
 # ---- the command, interrupted and killed ----
 
 
+SPP = 512  # half a second's work: no stop below comes after it
+
+
 def command(folder: Path, *more: str) -> subprocess.Popen[str]:
-    words = ["render", "cornell", *FRAME, "--spp", "128", "--checkpoint", "box.ckpt", "-o", "box.exr", *more]
+    words = ["render", "cornell", *FRAME, "--spp", str(SPP), "--checkpoint", "box.ckpt", "-o", "box.exr", *more]
     arguments = [sys.executable, "-m", "sunfleck", *words]
     return subprocess.Popen(arguments, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
@@ -260,12 +263,12 @@ def test_ctrl_c_then_the_same_command_goes_on(cornell: sf.Scene, tmp_path: Path)
     assert process.returncode == 130, err
     part = sf.merge([tmp_path / "box.ckpt"])
     assert np.array_equal(part.color, color_of(tmp_path))
-    assert 0 < part.summary().samples < 128 * 96 * 96
+    assert 0 < part.summary().samples < SPP * 96 * 96
     process = command(tmp_path)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 0, err
-    assert "128.0 a pixel" in out
-    assert np.array_equal(color_of(tmp_path), sf.render(cornell, 96, 96, spp=128).color)
+    assert f"{SPP}.0 a pixel" in out
+    assert np.array_equal(color_of(tmp_path), sf.render(cornell, 96, 96, spp=SPP).color)
 
 
 def test_kills_at_any_moment_leave_a_file_that_goes_on(cornell: sf.Scene, tmp_path: Path) -> None:
@@ -283,7 +286,7 @@ def test_kills_at_any_moment_leave_a_file_that_goes_on(cornell: sf.Scene, tmp_pa
     _, err = process.communicate(timeout=60)
     assert process.returncode == 0, err
     assert os.listdir(tmp_path) in (["box.ckpt", "box.exr"], ["box.exr", "box.ckpt"])
-    assert np.array_equal(color_of(tmp_path), sf.render(cornell, 96, 96, spp=128).color)
+    assert np.array_equal(color_of(tmp_path), sf.render(cornell, 96, 96, spp=SPP).color)
 
 
 def test_the_command_refuses_in_one_line(tmp_path: Path) -> None:
