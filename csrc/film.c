@@ -12,6 +12,7 @@
 #include "aov.h"
 #include "error.h"
 #include "mask.h"
+#include "pages.h"
 #include "platform.h"
 #include "scene_data.h"
 #include "signed_filter.h"
@@ -67,7 +68,7 @@ static sf_status allocate_arrays(sf_film *film, bool masked, sf_error *error) {
     size_t parts = film->negative_part > 0 ? traced * sizeof *film->signed_pixels : 0;
     film->memory_bytes =
         traced * sizeof *film->pixels + pools + rows + parts + pixels * (6 * 4 + 1 + masked) + 10 * SF_ALIGNMENT;
-    film->memory = sf_pages_alloc(film->memory_bytes);
+    film->memory = sf_pages_take(film->memory_bytes);
     if (!film->memory) return sf_fail_memory(error, "the film", film->memory_bytes);
     char *memory = film->memory;
     film->pixels = take(&memory, traced * sizeof *film->pixels);
@@ -131,7 +132,7 @@ void sf_film_mark_pilot(sf_film *film) {
 void sf_film_destroy(sf_film *film) {
     if (!film) return;
     sf_aov_destroy(film->aovs);
-    sf_pages_free(film->memory, film->memory_bytes);
+    sf_pages_give(film->memory, film->memory_bytes);
     for (size_t i = 0; i < film->attribute_count; ++i) free((char *)film->attributes[i].text);
     free(film->attributes);
     free(film->parts);

@@ -7,6 +7,7 @@
 
 #include "batch.h"
 #include "gather_kernels.h"
+#include "pages.h"
 
 #define PI 3.14159265358979323846
 
@@ -683,6 +684,29 @@ static void test_scene_that_is_not_committed_is_refused(void **state) {
     sf_film_destroy(NULL);
 }
 
+static void test_pages_of_the_last_film_come_back_as_zeros(void **state) {
+    (void)state;
+    size_t size = 5 << 20;
+    unsigned char *first = sf_pages_take(size), *other, *again;
+    memset(first, 0xa5, size);
+    sf_pages_give(first, size);
+    other = sf_pages_take(2 * size); /* of another size: not these */
+    again = sf_pages_take(size);
+    assert_ptr_equal(again, first);
+    assert_ptr_not_equal(other, first);
+    for (size_t i = 0; i < size; ++i)
+        if (again[i] || other[i]) fail_msg("byte %zu is not 0", i);
+    sf_pages_give(other, 2 * size);
+    sf_pages_give(again, size);
+    other = sf_pages_take(2 * size); /* the last alone is kept */
+    for (size_t i = 0; i < 2 * size; ++i) assert_true(other[i] == 0);
+    sf_pages_give(other, 2 * size);
+    other = sf_pages_take(SF_PAGES_KEPT + 1);
+    other[SF_PAGES_KEPT] = 1;
+    sf_pages_give(other, SF_PAGES_KEPT + 1); /* too large to be kept */
+    sf_pages_give(NULL, size);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_floor_under_a_rectangle_light_has_its_analytic_radiance),
@@ -706,6 +730,7 @@ int main(void) {
         cmocka_unit_test(test_scenes_of_any_scale_have_the_same_radiance),
         cmocka_unit_test(test_time_limit_is_kept_and_said),
         cmocka_unit_test(test_progress_can_stop_the_render_which_keeps_what_it_has),
+        cmocka_unit_test(test_pages_of_the_last_film_come_back_as_zeros),
         cmocka_unit_test(test_bad_options_are_refused_by_name),
         cmocka_unit_test(test_scene_that_is_not_committed_is_refused),
     };

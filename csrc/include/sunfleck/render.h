@@ -247,7 +247,7 @@ sf_status sf_film_load(const char *path, sf_film **film, sf_error *error);
  * the caller's. Thread-safe. */
 sf_status sf_film_merge(const sf_film *const *films, size_t count, sf_film **merged, sf_error *error);
 
-/* Frees the film; NULL is allowed. */
+/* Frees the film; NULL is allowed. Its memory, if at most 64 MiB, is kept for the next film of its size. */
 void sf_film_destroy(sf_film *film);
 
 /* One channel of a film: an array of rows, top first. */
