@@ -80,9 +80,11 @@ class Sunfleck:
 class Mitsuba:
     """Modes: direct and path (no roulette), with multijitter; roulette; direct-independent, path-independent.
 
-    The counts should be squares, as multijitter wants. A pass takes at most 256 samples a pixel
-    of the one pattern.
+    The counts should be squares, as multijitter wants. More than MOST samples a pixel, whose paths would not
+    fit into memory at once, are the mean of several pictures of as many.
     """
+
+    MOST = 4096
 
     def __init__(self, scene: SimpleNamespace) -> None:
         import reference
@@ -107,9 +109,10 @@ class Mitsuba:
 
     def render(self, mode: str, value: float, seed: int) -> tuple[float, float, np.ndarray]:
         scene, mi = self.build(mode), self.reference.mi
-        start = time.perf_counter()
-        image = np.asarray(mi.render(scene, seed=seed, spp=int(value)))  # evaluates it too
-        return time.perf_counter() - start, value, image
+        parts = max(1, int(value) // self.MOST)
+        start = time.perf_counter()  # to ask for the array evaluates it
+        images = [np.asarray(mi.render(scene, seed=seed + 1000 * k, spp=int(value) // parts)) for k in range(parts)]
+        return time.perf_counter() - start, value, np.mean(images, axis=0)
 
     def render_to_file(self, spp: int, path: Path) -> None:
         scene = self.build("direct" if self.scene.max_bounces == 1 else "path")

@@ -4,7 +4,6 @@
 #include "coordinates_kernels.h"
 
 #include <stdbool.h>
-#include <string.h>
 
 #include "coordinates_halton_kernels.h"
 #include "platform.h"
@@ -42,12 +41,7 @@ static inline void scramble_packet(const uint32_t *SF_RESTRICT words, const uint
                                    float *SF_RESTRICT out) {
     SF_ALIGNED(uint32_t) bits[SF_LANES];
     for (uint32_t l = 0; l < SF_LANES; ++l) bits[l] = sf_owen_hash32(words[l], seeds[l]);
-    for (uint32_t l = 0; l < SF_LANES; l += SF_LANES32) {
-        sf_lanes32 lanes;
-        memcpy(&lanes, bits + l, sizeof lanes);
-        lanes = sf_lanes32_reverse_bits(lanes);
-        memcpy(bits + l, &lanes, sizeof lanes);
-    }
+    sf_reverse_bits_each(bits, SF_LANES);
     for (uint32_t l = 0; l < SF_LANES; ++l) out[l] = sf_float_from_bits(bits[l]);
 }
 

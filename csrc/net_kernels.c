@@ -40,31 +40,39 @@ static void xor_f64(const span *s) {
         for (size_t i = 0; i < count; ++i) out[i] = sf_double_from_words(a[i] ^ b[i], low_state[i]);
 }
 
-static inline uint32_t owen_word(uint32_t reversed, uint32_t key) {
-    return sf_reverse_bits32(sf_owen_hash32(reversed, key));
+enum { RUN = 256 }; /* words that are scrambled together */
+
+/* Words i .. i + n - 1 of the span, scrambled. */
+static inline void owen_words(const span *s, size_t i, size_t n, uint32_t *SF_RESTRICT out) {
+    const uint32_t *SF_RESTRICT a = s->block[0] + i, *SF_RESTRICT b = s->state[0] + i, *SF_RESTRICT keys = s->keys + i;
+    for (size_t k = 0; k < n; ++k) out[k] = sf_owen_hash32(a[k] ^ b[k], keys[k]);
+    sf_reverse_bits_each(out, n);
 }
 
+static inline size_t run_from(size_t i, size_t count) { return count - i < RUN ? count - i : RUN; }
+
 static void owen_u32(const span *s) {
-    const uint32_t *SF_RESTRICT a = s->block[0], *SF_RESTRICT b = s->state[0], *SF_RESTRICT keys = s->keys;
-    uint32_t *SF_RESTRICT out = s->out;
-    size_t count = s->count;
-    for (size_t i = 0; i < count; ++i) out[i] = owen_word(a[i] ^ b[i], keys[i]);
+    for (size_t i = 0; i < s->count; i += RUN) owen_words(s, i, run_from(i, s->count), (uint32_t *)s->out + i);
 }
 
 static void owen_f32(const span *s) {
-    const uint32_t *SF_RESTRICT a = s->block[0], *SF_RESTRICT b = s->state[0], *SF_RESTRICT keys = s->keys;
-    float *SF_RESTRICT out = s->out;
-    size_t count = s->count;
-    for (size_t i = 0; i < count; ++i) out[i] = sf_float_from_bits(owen_word(a[i] ^ b[i], keys[i]));
+    SF_ALIGNED(uint32_t) words[RUN];
+    for (size_t i = 0; i < s->count; i += RUN) {
+        size_t n = run_from(i, s->count);
+        float *SF_RESTRICT out = (float *)s->out + i;
+        owen_words(s, i, n, words);
+        for (size_t k = 0; k < n; ++k) out[k] = sf_float_from_bits(words[k]);
+    }
 }
 
 static void owen_f64(const span *s) {
-    const uint32_t *SF_RESTRICT a = s->block[0], *SF_RESTRICT b = s->state[0], *SF_RESTRICT keys = s->keys;
-    double *SF_RESTRICT out = s->out;
-    size_t count = s->count;
-    for (size_t i = 0; i < count; ++i) {
-        uint32_t word = owen_word(a[i] ^ b[i], keys[i]);
-        out[i] = sf_double_from_words(word, sf_owen_low_word(word, keys[i]));
+    SF_ALIGNED(uint32_t) words[RUN];
+    for (size_t i = 0; i < s->count; i += RUN) {
+        size_t n = run_from(i, s->count);
+        const uint32_t *SF_RESTRICT keys = s->keys + i;
+        double *SF_RESTRICT out = (double *)s->out + i;
+        owen_words(s, i, n, words);
+        for (size_t k = 0; k < n; ++k) out[k] = sf_double_from_words(words[k], sf_owen_low_word(words[k], keys[k]));
     }
 }
 
@@ -158,8 +166,6 @@ static void owen_low(size_t count, const uint32_t *SF_RESTRICT high, const uint3
     }
 }
 
-enum { RUN = 256 }; /* words that are scrambled together */
-
 static void nested_run(size_t n, const uint64_t *SF_RESTRICT keys, uint32_t *SF_RESTRICT high,
                        uint32_t *SF_RESTRICT low) {
     uint64_t words[RUN], flips[RUN];
@@ -198,8 +204,8 @@ static void shuffle(uint32_t first, size_t count, uint32_t key, uint32_t *SF_RES
 
 static void look_up(size_t count, const uint32_t *SF_RESTRICT indices, const uint32_t table[256], uint32_t start_word,
                     uint32_t key, uint32_t *SF_RESTRICT out) {
-    for (size_t i = 0; i < count; ++i) out[i] = table[indices[i] & 255u] ^ start_word;
-    for (size_t i = 0; i < count; ++i) out[i] = owen_word(out[i], key);
+    for (size_t i = 0; i < count; ++i) out[i] = sf_owen_hash32(table[indices[i] & 255u] ^ start_word, key);
+    sf_reverse_bits_each(out, count);
 }
 
 const sf_net_kernels SF_AT_LEVEL(sf_net_kernels) = {start, rows, owen_low, nested, shuffle, look_up};

@@ -169,6 +169,22 @@ static inline sf_lanes32 sf_lanes32_reverse_bits(sf_lanes32 x) {
 #endif
 }
 
+/* The same of an array's words. */
+static inline void sf_reverse_bits_each(uint32_t *words, size_t count) {
+    size_t i = 0;
+    for (; i + SF_LANES32 <= count; i += SF_LANES32) {
+        sf_lanes32 lanes;
+        memcpy(&lanes, words + i, sizeof lanes);
+        lanes = sf_lanes32_reverse_bits(lanes);
+        memcpy(words + i, &lanes, sizeof lanes);
+    }
+    if (i == count) return;
+    sf_lanes32 rest = {0};
+    memcpy(&rest, words + i, (count - i) * sizeof *words);
+    rest = sf_lanes32_reverse_bits(rest);
+    memcpy(words + i, &rest, (count - i) * sizeof *words);
+}
+
 /* The lanes of two or of four registers in turn: x[0][0], x[1][0], …, x[0][1], … */
 static inline void sf_lanes64_interleave2(const sf_lanes64 x[2], void *out) {
 #if defined(__AVX512F__) && defined(__AVX512DQ__)

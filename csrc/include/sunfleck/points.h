@@ -251,11 +251,6 @@ static inline uint32_t sf_owen_scramble32(uint32_t word, uint32_t seed) {
     return sf_reverse_bits32(sf_owen_hash32(sf_reverse_bits32(word), seed));
 }
 
-/* The scrambled float of a word given with its bits reversed. */
-static inline float sf_owen_float(uint32_t reversed, uint32_t seed) {
-    return sf_float_from_bits(sf_reverse_bits32(sf_owen_hash32(reversed, seed)));
-}
-
 #ifdef __cplusplus
 }
 #endif
