@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     import sunfleck as sf
 
 PASS_SPP = 256  # a square, as multijitter wants; at 256 x 256 a pass takes under 1 GB
-PASSES = {"penumbra": 128, "cornell": 240, "defocus": 128, "keyhole": 128}
+PASSES = {"penumbra": 128, "cornell": 48, "defocus": 128, "keyhole": 128}
 
 
 def choose_variant() -> str:
