@@ -53,7 +53,7 @@ static size_t place_arrays(sf_aov_film *aovs, const sf_film *film, uint32_t thre
         if (memory) (array) = (void *)(memory + used); \
         used += round_up(bytes);                       \
     } while (0)
-    PLACE(aovs->sums, (size_t)film->width * film->height * aovs->sums_per_pixel * sizeof *aovs->sums);
+    PLACE(aovs->sums, film->stored * aovs->sums_per_pixel * sizeof *aovs->sums);
     if (aovs->wanted & SF_AOVS_OF_HITS) PLACE(aovs->hits, (size_t)threads * SF_BLOCKS * sizeof *aovs->hits);
     for (int k = 0; k < SF_AOV_COUNT; ++k)
         if (wants(aovs, k)) PLACE(aovs->values[k], crop * forms[k].components * sizeof(float));
@@ -87,7 +87,7 @@ void sf_aov_destroy(sf_aov_film *aovs) {
 
 void sf_aov_reset(sf_film *film) {
     sf_aov_film *aovs = film->aovs;
-    memset(aovs->sums, 0, (size_t)film->width * film->height * aovs->sums_per_pixel * sizeof *aovs->sums);
+    memset(aovs->sums, 0, film->stored * aovs->sums_per_pixel * sizeof *aovs->sums);
 }
 
 void sf_aov_gather(sf_batch *batch, const sf_render_context *context) {
@@ -154,9 +154,9 @@ static void resolve_pixel(const sf_film *film, const sf_film_pixel *pixel, size_
 }
 
 void sf_aov_resolve_row(sf_film *film, uint32_t y) {
-    const sf_film_pixel *pixels = sf_film_row_pixels(film, y);
     for (uint32_t x = 0; x < film->crop_width; ++x)
-        resolve_pixel(film, sf_film_counts(film, x, y) ? pixels + x : NULL, (size_t)y * film->crop_width + x);
+        resolve_pixel(film, sf_film_counts(film, x, y) ? sf_film_crop_at(film, x, y) : NULL,
+                      (size_t)y * film->crop_width + x);
 }
 
 /* ---- channels ---- */

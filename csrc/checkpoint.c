@@ -198,17 +198,14 @@ static void list_progress(array_list *list, sf_checkpoint *c) {
     list_array(list, "open", SF_ARRAY_U64, 1, c->cells, c->open, sizeof *c->open);
     list_array(list, "decay", SF_ARRAY_F32, 1, sf_stop_pool_count(film), film->decay, sizeof *film->decay);
     list_array(list, "active", SF_ARRAY_U64, 1, c->cells, c->active, sizeof *c->active);
-    list_columns(list, pixel_columns, COUNT(pixel_columns), film->pixels, (uint64_t)film->width * film->height,
-                 sizeof *film->pixels);
+    list_columns(list, pixel_columns, COUNT(pixel_columns), film->pixels, film->stored, sizeof *film->pixels);
     if (film->aovs && film->aovs->sums_per_pixel)
-        list_array(list, "aov.sums", SF_ARRAY_F64, film->aovs->sums_per_pixel, (uint64_t)film->width * film->height,
-                   film->aovs->sums, film->aovs->sums_per_pixel * sizeof *film->aovs->sums);
-    if (c->notes)
-        list_columns(list, goal_columns, COUNT(goal_columns), c->notes, (uint64_t)film->width * film->height,
-                     sizeof *c->notes);
+        list_array(list, "aov.sums", SF_ARRAY_F64, film->aovs->sums_per_pixel, film->stored, film->aovs->sums,
+                   film->aovs->sums_per_pixel * sizeof *film->aovs->sums);
+    if (c->notes) list_columns(list, goal_columns, COUNT(goal_columns), c->notes, film->stored, sizeof *c->notes);
     if (film->signed_pixels)
-        list_columns(list, signed_columns, COUNT(signed_columns), film->signed_pixels,
-                     (uint64_t)film->width * film->height, sizeof *film->signed_pixels);
+        list_columns(list, signed_columns, COUNT(signed_columns), film->signed_pixels, film->stored,
+                     sizeof *film->signed_pixels);
 }
 
 sf_status sf_checkpoint_save(const sf_checkpoint *checkpoint, const char *path, sf_error *error) {
@@ -266,9 +263,8 @@ static sf_status take_u32(const sf_container *file, const char *name, uint32_t *
 }
 
 static bool is_open(const sf_film *film, const uint64_t *open, uint32_t x, uint32_t y) {
-    size_t columns = (film->width + SF_CELL_SIZE - 1) / SF_CELL_SIZE;
     uint32_t bit = sf_cell_number(x % SF_CELL_SIZE, y % SF_CELL_SIZE);
-    return open[y / SF_CELL_SIZE * columns + x / SF_CELL_SIZE] >> bit & 1u;
+    return open[(size_t)(y / SF_CELL_SIZE) * film->cell_columns + x / SF_CELL_SIZE] >> bit & 1u;
 }
 
 /* Whether every open pixel of a second set is to have a count that there can be. */
@@ -277,7 +273,7 @@ static bool is_planned(const sf_checkpoint *c) {
     for (uint32_t y = 0; y < film->height; ++y)
         for (uint32_t x = 0; x < film->width; ++x) {
             if (!is_open(film, c->open, x, y)) continue;
-            double planned = film->pixels[(size_t)y * film->width + x].evidence.planned;
+            double planned = sf_film_at(film, x, y)->evidence.planned;
             if (!(planned >= 1 && planned <= SF_MAX_SPP)) return false;
         }
     return true;
@@ -296,8 +292,7 @@ static sf_status take_progress(const sf_container *file, sf_checkpoint *c, sf_er
     bool sound = c->state.from <= c->state.to && c->state.to <= SF_MAX_SPP &&
                  !(c->state.in_lap && c->state.look <= c->state.from);
     for (size_t i = 0; i < c->cells; ++i) sound = sound && !(c->open[i] & ~layout[i]) && !(c->active[i] & ~layout[i]);
-    for (size_t i = 0; i < (size_t)c->film->width * c->film->height; ++i)
-        sound = sound && c->film->pixels[i].reason < SF_STOP_REASON_COUNT;
+    for (size_t i = 0; i < c->film->stored; ++i) sound = sound && c->film->pixels[i].reason < SF_STOP_REASON_COUNT;
     sound = sound && c->film->counted > 0 && c->state.second <= (uint32_t)(c->film->options.unbiased != 0);
     sound = sound && (!c->state.second || is_planned(c));
     free(layout);
@@ -478,7 +473,7 @@ static void mark_unfinished(sf_film *film, const uint64_t *open, bool second) {
     for (uint32_t y = 0; y < film->height; ++y)
         for (uint32_t x = 0; x < film->width; ++x) {
             if (!is_open(film, open, x, y)) continue;
-            sf_film_pixel *pixel = film->pixels + (size_t)y * film->width + x;
+            sf_film_pixel *pixel = sf_film_at(film, x, y);
             pixel->half_width = second ? sf_film_half_width(pixel, sf_normal_factor(film->options.confidence))
                                        : sf_stop_half_width(film, &film->options, x, y);
             pixel->reason = pixel->moments.nonfinite ? SF_STOP_SUSPICIOUS : SF_STOP_INTERRUPTED;
@@ -528,8 +523,7 @@ static sf_status make_film(const sf_container *file, sf_film **film, sf_error *e
 
 /* Fills the film from the file, and draws the conclusions. */
 static sf_status fill_film(const sf_container *file, sf_checkpoint *c, sf_error *error) {
-    c->cells = (size_t)((c->film->width + SF_CELL_SIZE - 1) / SF_CELL_SIZE) *
-               ((c->film->height + SF_CELL_SIZE - 1) / SF_CELL_SIZE);
+    c->cells = (size_t)c->film->cell_columns * c->film->cell_rows;
     c->active = malloc(c->cells * sizeof *c->active);
     c->open = malloc(c->cells * sizeof *c->open);
     if (!c->active || !c->open) return sf_fail_memory(error, "the list of cells", c->cells * sizeof *c->active);

@@ -18,7 +18,7 @@
 
 #include "sunfleck/base.h"
 
-#define SF_CONTAINER_VERSION 2u
+#define SF_CONTAINER_VERSION 3u
 
 typedef enum sf_array_type {
     SF_ARRAY_TEXT = 0,

@@ -62,7 +62,7 @@ static void *take(char **memory, size_t bytes) {
 
 /* Takes every array from one block of pages, which starts as zeros. */
 static sf_status allocate_arrays(sf_film *film, bool masked, sf_error *error) {
-    size_t traced = (size_t)film->width * film->height, pixels = (size_t)film->crop_width * film->crop_height;
+    size_t traced = film->stored, pixels = (size_t)film->crop_width * film->crop_height;
     size_t rows = film->crop_height * sizeof *film->rows;
     size_t pools = sf_stop_pool_count(film) * sizeof *film->decay;
     size_t parts = film->negative_part > 0 ? traced * sizeof *film->signed_pixels : 0;
@@ -96,6 +96,9 @@ sf_status sf_film_create(const sf_render_options *options, bool masked, sf_film 
     film->y0 = crop[1] / SF_CELL_SIZE * SF_CELL_SIZE;
     film->width = smaller(round_up(crop[2]), options->width) - film->x0;
     film->height = smaller(round_up(crop[3]), options->height) - film->y0;
+    film->cell_columns = (film->width + SF_CELL_SIZE - 1) / SF_CELL_SIZE;
+    film->cell_rows = (film->height + SF_CELL_SIZE - 1) / SF_CELL_SIZE;
+    film->stored = (size_t)film->cell_columns * film->cell_rows * SF_CELL_SIZE * SF_CELL_SIZE;
     film->options = *options;
     film->options.progress = NULL;
     film->options.progress_user = NULL;
@@ -123,7 +126,7 @@ sf_status sf_film_create(const sf_render_options *options, bool masked, sf_film 
 }
 
 void sf_film_mark_pilot(sf_film *film) {
-    for (size_t i = 0; i < (size_t)film->width * film->height; ++i) {
+    for (size_t i = 0; i < film->stored; ++i) {
         sf_film_pixel *pixel = film->pixels + i;
         if (sf_film_taken(pixel) && pixel->reason != SF_STOP_SUSPICIOUS) pixel->reason = SF_STOP_INTERRUPTED;
     }
@@ -163,16 +166,11 @@ float sf_film_half_width(const sf_film_pixel *pixel, double z) {
     return (float)(z * sf_vector_moments_standard_error(&pixel->moments) * sqrt(1.0 / 3.0));
 }
 
-sf_film_pixel *sf_film_row_pixels(const sf_film *film, uint32_t y) {
-    return film->pixels + (size_t)(y + film->crop_y0 - film->y0) * film->width + (film->crop_x0 - film->x0);
-}
-
 void sf_film_sum_row(sf_film *film, uint32_t y) {
-    const sf_film_pixel *pixels = sf_film_row_pixels(film, y);
     double sum = 0;
     for (uint32_t x = 0; x < film->crop_width; ++x) {
         if (!sf_film_counts(film, x, y)) continue;
-        sum += sf_film_level_of(&pixels[x].moments);
+        sum += sf_film_level_of(&sf_film_crop_at(film, x, y)->moments);
     }
     film->rows[y].level = sum;
 }
@@ -210,10 +208,9 @@ static void resolve_pixel(sf_film *film, const sf_film_pixel *pixel, size_t i) {
 }
 
 void sf_film_resolve_row(sf_film *film, uint32_t y) {
-    const sf_film_pixel *pixels = sf_film_row_pixels(film, y);
     sf_film_row row = {.level = film->rows[y].level, .worst = -1};
     for (uint32_t x = 0; x < film->crop_width; ++x) {
-        const sf_film_pixel *pixel = pixels + x;
+        const sf_film_pixel *pixel = sf_film_crop_at(film, x, y);
         size_t i = (size_t)y * film->crop_width + x;
         if (!sf_film_counts(film, x, y)) {
             leave_out(film, i);

@@ -81,10 +81,12 @@ typedef struct sf_film_part {
 /* The cells that the crop touches, in pixels of the full frame, and what is kept of them. */
 struct sf_film {
     uint32_t x0, y0, width, height; /* of the traced region */
+    uint32_t cell_columns, cell_rows;
+    size_t stored; /* accumulators: 64 for each cell, also where it is beyond the frame */
     uint32_t crop_x0, crop_y0, crop_width, crop_height;
     void *memory; /* that the arrays below lie in */
     size_t memory_bytes;
-    sf_film_pixel *pixels; /* width * height */
+    sf_film_pixel *pixels; /* cell by cell, row by row in a cell: one that is sampled lies together */
     float *decay;          /* of variance, by pooling cell; see stopping.h */
     sf_film_row *rows;     /* crop_height */
     float *color;          /* of the crop, 3 * crop_width * crop_height */
@@ -92,7 +94,7 @@ struct sf_film {
     float *half_width;
     uint32_t *samples;
     uint8_t *reason;
-    struct sf_signed_pixel *signed_pixels; /* width * height; NULL unless the filter has negative lobes */
+    struct sf_signed_pixel *signed_pixels; /* as the pixels; NULL unless the filter has negative lobes */
     double negative_part;                  /* of the filter; see signed_filter.h */
     struct sf_aov_film *aovs;              /* NULL where none was asked for */
     uint8_t *mask;                         /* of the crop: 1 where the pixel counts; NULL: all do */
@@ -111,6 +113,19 @@ struct sf_film {
     uint32_t embree_version;
     sf_isa isa;
 };
+
+/* Where the pixel (x, y) of the traced region is among the accumulators. */
+static inline size_t sf_film_index(const sf_film *film, uint32_t x, uint32_t y) {
+    size_t cell = (size_t)(y / SF_CELL_SIZE) * film->cell_columns + x / SF_CELL_SIZE;
+    return (cell * SF_CELL_SIZE + y % SF_CELL_SIZE) * SF_CELL_SIZE + x % SF_CELL_SIZE;
+}
+static inline sf_film_pixel *sf_film_at(const sf_film *film, uint32_t x, uint32_t y) {
+    return film->pixels + sf_film_index(film, x, y);
+}
+/* The pixel (x, y) of the crop. */
+static inline sf_film_pixel *sf_film_crop_at(const sf_film *film, uint32_t x, uint32_t y) {
+    return sf_film_at(film, x + film->crop_x0 - film->x0, y + film->crop_y0 - film->y0);
+}
 
 /* What a render's own film is made of, for the checkpoint and for merging. */
 sf_status sf_film_identify(sf_film *film, const sf_scene *scene, sf_isa isa, sf_error *error);
@@ -155,8 +170,5 @@ void sf_film_resolve(sf_film *film);
 
 /* Records the options as attributes; after sf_film_summarize_rows and with the summary complete. */
 sf_status sf_film_describe(sf_film *film, sf_error *error);
-
-/* The accumulators of row y of the crop. */
-sf_film_pixel *sf_film_row_pixels(const sf_film *film, uint32_t y);
 
 #endif

@@ -26,13 +26,13 @@ typedef struct census {
 } census;
 
 struct sf_goal {
-    sf_goal_note *notes; /* by pixel of the film */
+    sf_goal_note *notes; /* as the film's pixels */
     census *censuses;    /* by worker; the first becomes that of all */
     uint32_t threshold;  /* the bin of gains from which on pixels are brought on */
     bool reached;
 };
 
-static size_t pixel_count(const sf_rounds *r) { return (size_t)r->film->width * r->film->height; }
+static size_t pixel_count(const sf_rounds *r) { return r->film->stored; }
 
 sf_status sf_goal_prepare(sf_rounds *r, sf_error *error) {
     if (!(r->options.relmse > 0)) return SF_STATUS_OK;
@@ -55,7 +55,7 @@ void sf_goal_destroy(sf_goal *goal) {
 }
 
 void sf_goal_take_note(sf_rounds *r, uint32_t x, uint32_t y) {
-    size_t i = (size_t)y * r->film->width + x;
+    size_t i = sf_film_index(r->film, x, y);
     const sf_film_pixel *pixel = r->film->pixels + i;
     r->goal->notes[i] = (sf_goal_note){.error = (float)sf_stop_relative_error(r->film, pixel),
                                        .around = sf_stop_relative_error_around(r->film, x, y),
@@ -105,7 +105,7 @@ static void count_cell(const sf_rounds *r, census *c, uint32_t cell) {
     for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m) {
         uint32_t x = sf_rounds_x(r, cell, m), y = sf_rounds_y(r, cell, m);
         if (x >= r->film->width || y >= r->film->height) continue;
-        const sf_goal_note *pixel = r->goal->notes + (size_t)y * r->film->width + x;
+        const sf_goal_note *pixel = r->goal->notes + sf_film_index(r->film, x, y);
         double part = (double)pixel->error / r->options.relmse * ONE;
         uint64_t error = sf_rounds_counts(r, x, y) ? (uint64_t)(part < MOST ? part : MOST) : 0;
         add_error(&c->whole, error);
@@ -188,7 +188,7 @@ static void choose_row(void *user, unsigned worker, size_t row) {
         for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m) {
             if (!(r->open[cell] >> m & 1u)) continue;
             uint32_t u = sf_rounds_x(r, cell, m), v = sf_rounds_y(r, cell, m);
-            const sf_goal_note *pixel = r->goal->notes + (size_t)v * r->film->width + u;
+            const sf_goal_note *pixel = r->goal->notes + sf_film_index(r->film, u, v);
             if (pixel->taken == r->from && gain_bin(pixel, fall) >= r->goal->threshold)
                 r->active[cell] |= UINT64_C(1) << m;
         }

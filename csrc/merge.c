@@ -89,7 +89,7 @@ static int openness(uint8_t reason) {
 static const sf_film_pixel *pixel_at(const sf_film *film, uint32_t x, uint32_t y) {
     if (x < film->crop_x0 || y < film->crop_y0) return NULL;
     if (x - film->crop_x0 >= film->crop_width || y - film->crop_y0 >= film->crop_height) return NULL;
-    return sf_film_row_pixels(film, y - film->crop_y0) + (x - film->crop_x0);
+    return sf_film_crop_at(film, x - film->crop_x0, y - film->crop_y0);
 }
 
 /* Adds the films' pixels in their order; false where none has it. Errors of independent estimates
@@ -176,7 +176,7 @@ static sf_status merge_pixels(sf_film *film, const sf_film *const *films, size_t
     double tolerance = film->summary.tolerance;
     for (uint32_t y = 0; y < film->crop_height; ++y)
         for (uint32_t x = 0; x < film->crop_width; ++x) {
-            sf_film_pixel *pixel = sf_film_row_pixels(film, y) + x;
+            sf_film_pixel *pixel = sf_film_crop_at(film, x, y);
             uint32_t frame_x = x + film->crop_x0, frame_y = y + film->crop_y0;
             if (!merge_pixel(films, count, frame_x, frame_y, film, pixel))
                 return sf_fail(error, SF_STATUS_INVALID_VALUE,

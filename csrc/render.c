@@ -41,8 +41,8 @@ static void open_all(sf_rounds *r) {
 
 static sf_status lay_out_cells(sf_rounds *r, sf_error *error) {
     const sf_film *film = r->film;
-    r->cell_columns = (film->width + SF_CELL_SIZE - 1) / SF_CELL_SIZE;
-    r->cell_rows = (film->height + SF_CELL_SIZE - 1) / SF_CELL_SIZE;
+    r->cell_columns = film->cell_columns;
+    r->cell_rows = film->cell_rows;
     r->tile_cells = r->options.tile_size / SF_CELL_SIZE;
     uint32_t x0 = film->x0 / SF_CELL_SIZE, y0 = film->y0 / SF_CELL_SIZE;
     r->tile_x0 = x0 / r->tile_cells * r->tile_cells;
@@ -112,7 +112,7 @@ static sf_status prepare(sf_rounds *r, sf_error *error) {
 static uint32_t furthest(const sf_rounds *r) {
     const sf_film *film = r->film;
     uint64_t most = 0;
-    for (size_t i = 0; i < (size_t)film->width * film->height; ++i) {
+    for (size_t i = 0; i < film->stored; ++i) {
         if (sf_film_taken(film->pixels + i) > most) most = sf_film_taken(film->pixels + i);
     }
     most += r->options.start;

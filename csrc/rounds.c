@@ -138,7 +138,7 @@ static bool decide_second(const sf_rounds *r, sf_film_pixel *pixel, size_t state
 
 /* Whether the pixel is done, and why. */
 static bool decide_pixel(sf_rounds *r, uint32_t x, uint32_t y, size_t state) {
-    sf_film_pixel *pixel = r->film->pixels + (size_t)y * r->film->width + x;
+    sf_film_pixel *pixel = sf_film_at(r->film, x, y);
     const sf_render_options *o = &r->options;
     const sf_film_summary *summary = &r->film->summary;
     if (r->second) return decide_second(r, pixel, state);
@@ -170,7 +170,7 @@ static void decide_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
             r->open[cell] &= ~bit;
             if (!sf_rounds_counts(r, x, y)) continue;
             ++worker->done;
-            worker->met += r->film->pixels[(size_t)y * r->film->width + x].reason == SF_STOP_MET;
+            worker->met += sf_film_at(r->film, x, y)->reason == SF_STOP_MET;
         }
 }
 
@@ -269,7 +269,7 @@ static void begin_second(sf_rounds *r) {
         for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m) {
             uint32_t x = sf_rounds_x(r, cell, m), y = sf_rounds_y(r, cell, m);
             if (x >= film->width || y >= film->height) continue;
-            sf_film_pixel *pixel = film->pixels + (size_t)y * film->width + x;
+            sf_film_pixel *pixel = sf_film_at(film, x, y);
             uint64_t planned = sf_film_taken(pixel);
             if (planned == 0) continue;
             memset(&pixel->moments, 0, sizeof pixel->moments);

@@ -89,7 +89,7 @@ static inline uint32_t sf_rounds_y(const sf_rounds *r, uint32_t cell, uint32_t m
     return cell / r->cell_columns * SF_CELL_SIZE + sf_cell_y(m);
 }
 static inline sf_film_pixel *sf_rounds_pixel(const sf_rounds *r, uint32_t cell, uint32_t m) {
-    return r->film->pixels + (size_t)sf_rounds_y(r, cell, m) * r->film->width + sf_rounds_x(r, cell, m);
+    return sf_film_at(r->film, sf_rounds_x(r, cell, m), sf_rounds_y(r, cell, m));
 }
 
 /* Whether a pixel of the film is of the picture, not of the margin that was traced with it. */

@@ -54,7 +54,7 @@ static sf_block make_block(const sf_rounds *r, uint32_t x, uint32_t y, uint64_t 
                       .active = ((1u << end) - 1) & ~((1u << (n - base)) - 1),
                       .x = x + r->film->x0,
                       .y = y + r->film->y0,
-                      .pixel = y * r->film->width + x,
+                      .pixel = (uint32_t)sf_film_index(r->film, x, y),
                       .number = base / SF_LANES};
     if (r->options.stop == SF_STOP_REPLICATES) { /* replicates take turns by the block */
         block.key = sf_hash64(key, block.number % SF_REPLICATES + 1);

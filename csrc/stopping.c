@@ -165,8 +165,7 @@ static void add_pixel(pool_sums *sums, const sf_film_pixel *pixel, uint32_t look
 static pool_sums sum_pool(const sf_film *film, sf_pool_range range, uint32_t look, unsigned levels) {
     pool_sums sums = {.looked_at = 0};
     for (uint32_t y = range.y0; y < range.y1; ++y)
-        for (uint32_t x = range.x0; x < range.x1; ++x)
-            add_pixel(&sums, film->pixels + (size_t)y * film->width + x, look, levels);
+        for (uint32_t x = range.x0; x < range.x1; ++x) add_pixel(&sums, sf_film_at(film, x, y), look, levels);
     return sums;
 }
 
@@ -186,7 +185,7 @@ void sf_stop_look_at_pool(sf_film *film, uint32_t pool, uint32_t look, sf_lap la
     float least = least_variance(&sums, lap.levels, decay);
     for (uint32_t y = range.y0; y < range.y1; ++y)
         for (uint32_t x = range.x0; x < range.x1; ++x) {
-            sf_film_pixel *pixel = film->pixels + (size_t)y * film->width + x;
+            sf_film_pixel *pixel = sf_film_at(film, x, y);
             if (sf_film_taken(pixel) != look) continue;
             float variance = predict_variance(&pixel->evidence.dyadic, lap.levels, decay);
             pixel->look = (uint8_t)(lap.levels + lap.unit_shift);
@@ -216,11 +215,11 @@ static double relative_weight(const sf_film_pixel *pixel) {
 /* The mean over the 3 x 3 pixels around of the variance at this pixel's look, or of the relative one;
  * those that stopped at another look are carried there by the decay. */
 static inline float pooled_variance(const sf_film *film, uint32_t x, uint32_t y, bool relative) {
-    const sf_film_pixel *centre = film->pixels + (size_t)y * film->width + x;
+    const sf_film_pixel *centre = sf_film_at(film, x, y);
     float decay = film->decay[pool_of(film, x, y)], sum = 0, count = 0;
     for (uint32_t v = y ? y - 1 : 0; v <= y + 1 && v < film->height; ++v)
         for (uint32_t u = x ? x - 1 : 0; u <= x + 1 && u < film->width; ++u) {
-            const sf_film_pixel *pixel = film->pixels + (size_t)v * film->width + u;
+            const sf_film_pixel *pixel = sf_film_at(film, u, v);
             if (!pixel->look) continue;
             float variance = pixel->variance * power_of(decay, (int)pixel->look - (int)centre->look);
             sum += relative ? variance * (float)relative_weight(pixel) : variance;
@@ -267,7 +266,7 @@ double sf_stop_factor(const sf_film *film, const sf_render_options *o, const sf_
 }
 
 float sf_stop_half_width(const sf_film *film, const sf_render_options *o, uint32_t x, uint32_t y) {
-    const sf_film_pixel *pixel = film->pixels + (size_t)y * film->width + x;
+    const sf_film_pixel *pixel = sf_film_at(film, x, y);
     double factor = sf_stop_factor(film, o, pixel);
     if (o->stop == SF_STOP_REPLICATES && sf_stop_is_look(o, (uint32_t)sf_film_taken(pixel)))
         return replicates_half_width(film, pixel, factor);
@@ -286,7 +285,7 @@ double sf_stop_relative_error(const sf_film *film, const sf_film_pixel *pixel) {
 }
 
 float sf_stop_relative_error_around(const sf_film *film, uint32_t x, uint32_t y) {
-    const sf_film_pixel *pixel = film->pixels + (size_t)y * film->width + x;
+    const sf_film_pixel *pixel = sf_film_at(film, x, y);
     if (film->options.stop != SF_STOP_DYADIC || !pixel->look) return (float)sf_stop_relative_error(film, pixel);
     return (float)SAFETY * pooled_variance(film, x, y, true);
 }
