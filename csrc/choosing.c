@@ -12,7 +12,7 @@ static bool tile_has(const sf_rounds *r, uint32_t tile, const uint64_t *cells) {
     sf_cell_range range = sf_rounds_tile(r, tile);
     for (uint32_t y = range.y0; y < range.y1; ++y)
         for (uint32_t x = range.x0; x < range.x1; ++x)
-            if (cells[(size_t)y * r->cell_columns + x]) return true;
+            if (cells[(size_t)y * r->film->cell_columns + x]) return true;
     return false;
 }
 

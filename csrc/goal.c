@@ -119,8 +119,8 @@ static void count_cell(const sf_rounds *r, census *c, uint32_t cell) {
 
 static void count_row(void *user, unsigned worker, size_t row) {
     const sf_rounds *r = user;
-    for (uint32_t x = 0; x < r->cell_columns; ++x)
-        count_cell(r, r->goal->censuses + worker, (uint32_t)row * r->cell_columns + x);
+    for (uint32_t x = 0; x < r->film->cell_columns; ++x)
+        count_cell(r, r->goal->censuses + worker, (uint32_t)row * r->film->cell_columns + x);
 }
 
 static void add_census(census *sum, const census *part) {
@@ -139,7 +139,7 @@ static const census *take_census(sf_rounds *r) {
         memset(censuses + i, 0, sizeof *censuses);
         memset(censuses[i].least, 0xff, sizeof censuses[i].least);
     }
-    sf_pool_run(r->pool, r->cell_rows, count_row, sf_rounds_wake, r);
+    sf_pool_run(r->pool, r->film->cell_rows, count_row, sf_rounds_wake, r);
     for (uint32_t i = 1; i < r->options.threads; ++i) add_census(censuses, censuses + i);
     return censuses;
 }
@@ -181,8 +181,8 @@ static uint32_t choose_threshold(const census *c, double aim) {
 static void choose_row(void *user, unsigned worker, size_t row) {
     sf_rounds *r = user;
     (void)worker;
-    for (uint32_t x = 0; x < r->cell_columns; ++x) {
-        uint32_t cell = (uint32_t)row * r->cell_columns + x;
+    for (uint32_t x = 0; x < r->film->cell_columns; ++x) {
+        uint32_t cell = (uint32_t)row * r->film->cell_columns + x;
         float fall = fall_in(r, cell);
         r->active[cell] = 0;
         for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m) {
@@ -212,6 +212,6 @@ bool sf_goal_choose(sf_rounds *r) {
     if (!beyond) return false;
     r->from = least;
     r->look = sf_stop_next_look(&r->options, least);
-    sf_pool_run(r->pool, r->cell_rows, choose_row, sf_rounds_wake, r);
+    sf_pool_run(r->pool, r->film->cell_rows, choose_row, sf_rounds_wake, r);
     return true;
 }

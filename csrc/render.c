@@ -31,9 +31,9 @@ static uint64_t pixels_inside(uint32_t width, uint32_t height) {
 }
 
 static void open_all(sf_rounds *r) {
-    for (uint32_t y = 0; y < r->cell_rows; ++y)
-        for (uint32_t x = 0; x < r->cell_columns; ++x)
-            r->open[(size_t)y * r->cell_columns + x] =
+    for (uint32_t y = 0; y < r->film->cell_rows; ++y)
+        for (uint32_t x = 0; x < r->film->cell_columns; ++x)
+            r->open[(size_t)y * r->film->cell_columns + x] =
                 sf_mask_touches_cell(&r->options, r->film->x0 + x * SF_CELL_SIZE, r->film->y0 + y * SF_CELL_SIZE)
                     ? pixels_inside(r->film->width - x * SF_CELL_SIZE, r->film->height - y * SF_CELL_SIZE)
                     : 0;
@@ -41,14 +41,12 @@ static void open_all(sf_rounds *r) {
 
 static sf_status lay_out_cells(sf_rounds *r, sf_error *error) {
     const sf_film *film = r->film;
-    r->cell_columns = film->cell_columns;
-    r->cell_rows = film->cell_rows;
     r->tile_cells = r->options.tile_size / SF_CELL_SIZE;
     uint32_t x0 = film->x0 / SF_CELL_SIZE, y0 = film->y0 / SF_CELL_SIZE;
     r->tile_x0 = x0 / r->tile_cells * r->tile_cells;
     r->tile_y0 = y0 / r->tile_cells * r->tile_cells;
-    r->tile_columns = (x0 + r->cell_columns - r->tile_x0 + r->tile_cells - 1) / r->tile_cells;
-    r->tile_rows = (y0 + r->cell_rows - r->tile_y0 + r->tile_cells - 1) / r->tile_cells;
+    r->tile_columns = (x0 + film->cell_columns - r->tile_x0 + r->tile_cells - 1) / r->tile_cells;
+    r->tile_rows = (y0 + film->cell_rows - r->tile_y0 + r->tile_cells - 1) / r->tile_cells;
     size_t cells = sf_rounds_cell_count(r), tiles = (size_t)r->tile_columns * r->tile_rows;
     r->open = malloc(cells * sizeof *r->open);
     r->active = malloc(cells * sizeof *r->active);

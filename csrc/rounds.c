@@ -104,7 +104,7 @@ static bool pool_is_active(const sf_rounds *r, uint32_t pool) {
     sf_pool_range range = sf_stop_pool_range(r->film, pool);
     for (uint32_t y = range.y0 / SF_CELL_SIZE; y * SF_CELL_SIZE < range.y1; ++y)
         for (uint32_t x = range.x0 / SF_CELL_SIZE; x * SF_CELL_SIZE < range.x1; ++x)
-            if (r->active[(size_t)y * r->cell_columns + x]) return true;
+            if (r->active[(size_t)y * r->film->cell_columns + x]) return true;
     return false;
 }
 

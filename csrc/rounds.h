@@ -47,7 +47,6 @@ typedef struct sf_rounds {
     uint64_t *open;   /* pixels that are not done, by cell of the film: bit m is pixel m of the cell in
                          Morton order */
     uint64_t *active; /* of these, the ones that the lap brings on */
-    uint32_t cell_columns, cell_rows;
     uint32_t tile_columns, tile_rows;
     uint32_t tile_x0, tile_y0; /* of the first tile, in cells of the frame */
     uint32_t tile_cells;       /* a side */
@@ -73,7 +72,9 @@ typedef struct sf_rounds {
     sf_error checkpoint_error;
 } sf_rounds;
 
-static inline size_t sf_rounds_cell_count(const sf_rounds *r) { return (size_t)r->cell_columns * r->cell_rows; }
+static inline size_t sf_rounds_cell_count(const sf_rounds *r) {
+    return (size_t)r->film->cell_columns * r->film->cell_rows;
+}
 
 static inline uint64_t sf_rounds_count(const sf_rounds *r, const uint64_t *cells) {
     uint64_t count = 0;
@@ -83,10 +84,10 @@ static inline uint64_t sf_rounds_count(const sf_rounds *r, const uint64_t *cells
 }
 
 static inline uint32_t sf_rounds_x(const sf_rounds *r, uint32_t cell, uint32_t m) {
-    return cell % r->cell_columns * SF_CELL_SIZE + sf_cell_x(m);
+    return cell % r->film->cell_columns * SF_CELL_SIZE + sf_cell_x(m);
 }
 static inline uint32_t sf_rounds_y(const sf_rounds *r, uint32_t cell, uint32_t m) {
-    return cell / r->cell_columns * SF_CELL_SIZE + sf_cell_y(m);
+    return cell / r->film->cell_columns * SF_CELL_SIZE + sf_cell_y(m);
 }
 static inline sf_film_pixel *sf_rounds_pixel(const sf_rounds *r, uint32_t cell, uint32_t m) {
     return sf_film_at(r->film, sf_rounds_x(r, cell, m), sf_rounds_y(r, cell, m));
@@ -120,8 +121,8 @@ static inline sf_cell_range sf_rounds_tile(const sf_rounds *r, uint32_t tile) {
     uint32_t top = r->tile_y0 + tile / r->tile_columns * r->tile_cells;
     return (sf_cell_range){.x0 = clamp_below(left, x0),
                            .y0 = clamp_below(top, y0),
-                           .x1 = at_most(left + r->tile_cells - x0, r->cell_columns),
-                           .y1 = at_most(top + r->tile_cells - y0, r->cell_rows)};
+                           .x1 = at_most(left + r->tile_cells - x0, r->film->cell_columns),
+                           .y1 = at_most(top + r->tile_cells - y0, r->film->cell_rows)};
 }
 
 /* Calls `visit` for every cell of the tile that has a pixel in `cells`, r->active or r->open. */
@@ -130,7 +131,8 @@ static inline void sf_rounds_each_cell(sf_rounds *r, unsigned worker, uint32_t t
     sf_cell_range range = sf_rounds_tile(r, tile);
     for (uint32_t y = range.y0; y < range.y1; ++y)
         for (uint32_t x = range.x0; x < range.x1; ++x)
-            if (cells[(size_t)y * r->cell_columns + x]) visit(r, r->workers + worker, y * r->cell_columns + x);
+            if (cells[(size_t)y * r->film->cell_columns + x])
+                visit(r, r->workers + worker, y * r->film->cell_columns + x);
 }
 
 /* sampling.c: takes the round's samples of a tile; an sf_pool_work_fn over the tiles listed. */
