@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-/* Rays to Embree and back, in packets of 16; those of the camera several packets at a time. The width and the flags of a
- * stage never change while a scene is rendered, so that Embree's answers do not depend on which rays share a packet. */
+/* Rays to Embree and back, in packets of 16; those of the camera several packets at a time. The width and
+ * the flags of a stage never change while a scene is rendered, so that Embree's answers do not depend on
+ * which rays share a packet. */
 
 #include "trace_kernels.h"
 
