@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "lanes.h"
 #include "sunfleck/mapping.h"
 
 /* Takes coordinate[0 .. 1] to the filter's places; the arguments after the two coordinates are the filter's. */
@@ -45,7 +46,7 @@ static void apply_filter(sf_batch *b, sf_pixel_filter filter) {
 }
 
 /* Directions through the pixels: forward + x right + y up, before they are normalized. */
-static inline void aim_blocks(sf_batch *b, const sf_camera_frame *camera, size_t width) {
+static inline void aim(size_t width, sf_batch *b, const sf_camera_frame *camera) {
     const sf_camera_frame frame = *camera;
     for (size_t block = 0; block < b->block_count; ++block) {
         float left = (float)b->blocks[block].x - frame.half_width, top = frame.half_height - (float)b->blocks[block].y;
@@ -54,17 +55,6 @@ static inline void aim_blocks(sf_batch *b, const sf_camera_frame *camera, size_t
             float x = (left + b->coordinate[0][i]) * frame.pixel, y = (top - b->coordinate[1][i]) * frame.pixel;
             for (int c = 0; c < 3; ++c) b->direction[c][i] = frame.forward[c] + x * frame.right[c] + y * frame.up[c];
         }
-    }
-}
-
-/* Each width with loops of its own. */
-static void aim(sf_batch *b, const sf_camera_frame *camera) {
-    switch (b->width) {
-        case 1: aim_blocks(b, camera, 1); break;
-        case 2: aim_blocks(b, camera, 2); break;
-        case 4: aim_blocks(b, camera, 4); break;
-        case 8: aim_blocks(b, camera, 8); break;
-        default: aim_blocks(b, camera, SF_LANES); break;
     }
 }
 
@@ -99,7 +89,7 @@ static void normalize_directions(sf_batch *b) {
 
 static void camera(sf_batch *b, const sf_camera_frame *frame, sf_pixel_filter filter, float (*lens)[SF_PATHS]) {
     apply_filter(b, filter);
-    aim(b, frame);
+    SF_AT_WIDTH(b->width, aim, b, frame)
     if (lens)
         leave_lens(b, frame, lens);
     else

@@ -195,9 +195,9 @@ static void list_identity(array_list *list, sf_film *film) {
 static void list_progress(array_list *list, sf_checkpoint *c) {
     sf_film *film = c->film;
     list_columns(list, state_columns, COUNT(state_columns), &c->state, 1, sizeof c->state);
-    list_array(list, "open", SF_ARRAY_U64, 1, c->cells, c->open, sizeof *c->open);
+    list_array(list, "open", SF_ARRAY_U64, 1, sf_film_cell_count(film), c->open, sizeof *c->open);
     list_array(list, "decay", SF_ARRAY_F32, 1, sf_stop_pool_count(film), film->decay, sizeof *film->decay);
-    list_array(list, "active", SF_ARRAY_U64, 1, c->cells, c->active, sizeof *c->active);
+    list_array(list, "active", SF_ARRAY_U64, 1, sf_film_cell_count(film), c->active, sizeof *c->active);
     list_columns(list, pixel_columns, COUNT(pixel_columns), film->pixels, film->stored, sizeof *film->pixels);
     if (film->aovs && film->aovs->sums_per_pixel)
         list_array(list, "aov.sums", SF_ARRAY_F64, film->aovs->sums_per_pixel, film->stored, film->aovs->sums,
@@ -282,16 +282,17 @@ static bool is_planned(const sf_checkpoint *c) {
 /* Fills the accumulators and the state. Values that would lead outside an array are refused:
  * whoever wrote the file may have meant ill. */
 static sf_status take_progress(const sf_container *file, sf_checkpoint *c, sf_error *error) {
-    uint64_t *layout = malloc(c->cells * sizeof *layout); /* the pixels that there are */
-    if (!layout) return sf_fail_memory(error, "the list of cells", c->cells * sizeof *layout);
-    memcpy(layout, c->open, c->cells * sizeof *layout);
+    size_t cells = sf_film_cell_count(c->film);
+    uint64_t *layout = malloc(cells * sizeof *layout); /* the pixels that there are */
+    if (!layout) return sf_fail_memory(error, "the list of cells", cells * sizeof *layout);
+    memcpy(layout, c->open, cells * sizeof *layout);
     array_list list = {.count = 0};
     sf_status status = SF_STATUS_OK;
     list_progress(&list, c);
     for (size_t i = 0; !status && i < list.count; ++i) status = sf_container_take(file, list.arrays + i, error);
     bool sound = c->state.from <= c->state.to && c->state.to <= SF_MAX_SPP &&
                  !(c->state.in_lap && c->state.look <= c->state.from);
-    for (size_t i = 0; i < c->cells; ++i) sound = sound && !(c->open[i] & ~layout[i]) && !(c->active[i] & ~layout[i]);
+    for (size_t i = 0; i < cells; ++i) sound = sound && !(c->open[i] & ~layout[i]) && !(c->active[i] & ~layout[i]);
     for (size_t i = 0; i < c->film->stored; ++i) sound = sound && c->film->pixels[i].reason < SF_STOP_REASON_COUNT;
     sound = sound && c->film->counted > 0 && c->state.second <= (uint32_t)(c->film->options.unbiased != 0);
     sound = sound && (!c->state.second || is_planned(c));
@@ -523,11 +524,11 @@ static sf_status make_film(const sf_container *file, sf_film **film, sf_error *e
 
 /* Fills the film from the file, and draws the conclusions. */
 static sf_status fill_film(const sf_container *file, sf_checkpoint *c, sf_error *error) {
-    c->cells = (size_t)c->film->cell_columns * c->film->cell_rows;
-    c->active = malloc(c->cells * sizeof *c->active);
-    c->open = malloc(c->cells * sizeof *c->open);
-    if (!c->active || !c->open) return sf_fail_memory(error, "the list of cells", c->cells * sizeof *c->active);
-    memset(c->open, 0xff, c->cells * sizeof *c->open);
+    size_t cells = sf_film_cell_count(c->film);
+    c->active = malloc(cells * sizeof *c->active);
+    c->open = malloc(cells * sizeof *c->open);
+    if (!c->active || !c->open) return sf_fail_memory(error, "the list of cells", cells * sizeof *c->active);
+    memset(c->open, 0xff, cells * sizeof *c->open);
     sf_status status = take_progress(file, c, error);
     if (status) return status;
     c->film->summary.level = c->state.level; /* half-widths may refer to them */

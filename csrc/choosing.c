@@ -75,7 +75,7 @@ static uint32_t survey(sf_rounds *r, double *worst) {
 static uint64_t choose_beyond(sf_rounds *r, double target) {
     uint64_t count = 0;
     r->target = target;
-    memset(r->active, 0, sf_rounds_cell_count(r) * sizeof *r->active);
+    memset(r->active, 0, sf_film_cell_count(r->film) * sizeof *r->active);
     for (uint32_t i = 0; i < r->options.threads; ++i) r->workers[i].chosen = 0;
     sf_pool_run(r->pool, all_tiles(r), choose_tile, sf_rounds_wake, r);
     for (uint32_t i = 0; i < r->options.threads; ++i) count += r->workers[i].chosen;
@@ -122,7 +122,7 @@ static bool choose_by_budget(sf_rounds *r) {
 /* The least count at which an open pixel has its second set. */
 static uint32_t least_planned(const sf_rounds *r) {
     double least = SF_MAX_SPP;
-    for (uint32_t cell = 0; cell < sf_rounds_cell_count(r); ++cell)
+    for (uint32_t cell = 0; cell < sf_film_cell_count(r->film); ++cell)
         for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m)
             if (r->open[cell] >> m & 1u) least = fmin(least, sf_rounds_pixel(r, cell, m)->evidence.planned);
     return (uint32_t)least;
@@ -134,7 +134,7 @@ bool sf_rounds_begin_lap(sf_rounds *r) {
     if (chosen && !r->second) {
         if (!(r->goal ? sf_goal_choose(r) : choose_by_budget(r))) return false;
     } else {
-        memcpy(r->active, r->open, sf_rounds_cell_count(r) * sizeof *r->active);
+        memcpy(r->active, r->open, sf_film_cell_count(r->film) * sizeof *r->active);
         r->from = r->to;
     }
     sf_rounds_list_tiles(r);

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 
 #include "coordinates_halton_kernels.h"
+#include "lanes.h"
 #include "platform.h"
 
 /* The key of a set of dimensions in one block, and from it of each dimension. */
@@ -71,8 +72,8 @@ static inline void fill_in_step(const uint32_t table[4][256], uint32_t base, con
  * fewer than 16. The set's order keeps the 16 samples of a block together: they differ in the last four
  * bits of their indices, and the rest of an index hangs on the rest of it alone. What is of the
  * blocks is made for the whole batch, and then what is of the lanes, so that no packet waits for it. */
-static inline void fill_sobol(const sf_coordinates *coordinates, const sf_coordinate_source *source,
-                              const sf_block *blocks, uint32_t count, uint32_t width, uint32_t first_sample,
+static inline void fill_sobol(uint32_t width, const sf_coordinates *coordinates, const sf_coordinate_source *source,
+                              const sf_block *blocks, uint32_t count, uint32_t first_sample,
                               float (*SF_RESTRICT out)[SF_PATHS]) {
     uint64_t keys[SF_BLOCKS];
     uint32_t bases[SF_BLOCKS], seeds[SF_BLOCKS], starts[SF_BLOCKS], indices[SF_BLOCKS], differ = source->set;
@@ -107,18 +108,6 @@ static inline void fill_sobol(const sf_coordinates *coordinates, const sf_coordi
         spread(starts, count, width, words);
         add_lanes(table[0], reversed, lanes, words);
         for (uint32_t l = 0; l < lanes; l += SF_LANES) scramble_packet(words + l, lane_seeds + l, out[d] + l);
-    }
-}
-
-/* Each width with loops of its own. */
-static void fill_sobol_narrow(const sf_coordinates *coordinates, const sf_coordinate_source *source,
-                              const sf_block *blocks, uint32_t block_count, uint32_t width, uint32_t first_sample,
-                              float (*out)[SF_PATHS]) {
-    switch (width) {
-        case 1: fill_sobol(coordinates, source, blocks, block_count, 1, first_sample, out); break;
-        case 2: fill_sobol(coordinates, source, blocks, block_count, 2, first_sample, out); break;
-        case 4: fill_sobol(coordinates, source, blocks, block_count, 4, first_sample, out); break;
-        default: fill_sobol(coordinates, source, blocks, block_count, 8, first_sample, out); break;
     }
 }
 
@@ -196,7 +185,7 @@ static void fill(const sf_coordinates *coordinates, const sf_coordinate_source *
         case SF_PATTERN_HALTON:
             SF_AT_LEVEL(sf_coordinates_halton_kernels).fill(source, blocks, block_count, out);
             break;
-        case SF_PATTERN_SOBOL: fill_sobol(coordinates, source, blocks, block_count, SF_LANES, 0, out); break;
+        case SF_PATTERN_SOBOL: fill_sobol(SF_LANES, coordinates, source, blocks, block_count, 0, out); break;
         default: fill_random(source, blocks, block_count, out); break;
     }
 }
@@ -205,7 +194,7 @@ static void fill_narrow(const sf_coordinates *coordinates, const sf_coordinate_s
                         uint32_t block_count, uint32_t width, uint32_t first_sample, float (*scratch)[SF_PATHS],
                         float (*out)[SF_PATHS]) {
     if (coordinates->pattern == SF_PATTERN_SOBOL) {
-        fill_sobol_narrow(coordinates, source, blocks, block_count, width, first_sample, out);
+        SF_AT_WIDTH(width, fill_sobol, coordinates, source, blocks, block_count, first_sample, out)
         return;
     }
     /* Others are made whole, and their lanes moved together. */

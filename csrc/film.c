@@ -98,7 +98,7 @@ sf_status sf_film_create(const sf_render_options *options, bool masked, sf_film 
     film->height = smaller(round_up(crop[3]), options->height) - film->y0;
     film->cell_columns = (film->width + SF_CELL_SIZE - 1) / SF_CELL_SIZE;
     film->cell_rows = (film->height + SF_CELL_SIZE - 1) / SF_CELL_SIZE;
-    film->stored = (size_t)film->cell_columns * film->cell_rows * SF_CELL_SIZE * SF_CELL_SIZE;
+    film->stored = sf_film_cell_count(film) * SF_CELL_SIZE * SF_CELL_SIZE;
     film->options = *options;
     film->options.progress = NULL;
     film->options.progress_user = NULL;

@@ -102,7 +102,7 @@ struct sf_film {
     uint64_t mask_hash;
     uint8_t untouched;                    /* the sf_stop_reason of pixels without a sample */
     double factors[SF_DYADIC_LEVELS + 1]; /* standard errors in a half-width, see sf_stop_factor */
-    double unseen;                        /* of the frame's level, that one sample may have missed; see stopping.c */
+    double unseen;                        /* -log(1 - confidence); see stopping.c */
     sf_attribute *attributes;
     size_t attribute_count;
     sf_film_summary summary;
@@ -113,6 +113,8 @@ struct sf_film {
     uint32_t embree_version;
     sf_isa isa;
 };
+
+static inline size_t sf_film_cell_count(const sf_film *film) { return (size_t)film->cell_columns * film->cell_rows; }
 
 /* Where the pixel (x, y) of the traced region is among the accumulators. */
 static inline size_t sf_film_index(const sf_film *film, uint32_t x, uint32_t y) {

@@ -41,7 +41,7 @@ static inline void sum_samples(const sf_batch *b, uint32_t first, uint32_t width
     out->m2 = sf_sum_lanes(squares, width);
 }
 
-static inline void gather_lanes(const sf_batch *b, uint32_t block, uint32_t wanted, uint32_t width,
+static inline void gather_lanes(uint32_t width, const sf_batch *b, uint32_t block, uint32_t wanted,
                                 sf_block_statistics *out) {
     uint32_t first = block * width, hits = 0;
     SF_ALIGNED(uint32_t) keep[SF_LANES];
@@ -56,15 +56,8 @@ static inline void gather_lanes(const sf_batch *b, uint32_t block, uint32_t want
     out->moments.nonfinite = sf_count_bits(wanted) - count;
 }
 
-/* Each width with loops of its own. */
 static void gather_block(const sf_batch *b, uint32_t block, uint32_t wanted, sf_block_statistics *out) {
-    switch (b->width) {
-        case 1: gather_lanes(b, block, wanted, 1, out); break;
-        case 2: gather_lanes(b, block, wanted, 2, out); break;
-        case 4: gather_lanes(b, block, wanted, 4, out); break;
-        case 8: gather_lanes(b, block, wanted, 8, out); break;
-        default: gather_lanes(b, block, wanted, SF_LANES, out); break;
-    }
+    SF_AT_WIDTH(b->width, gather_lanes, b, block, wanted, out)
 }
 
 static void gather_statistics(sf_batch *b) {

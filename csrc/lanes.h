@@ -1,12 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-/* Sums over the lanes of a block, for kernels. */
+/* What kernels do with the lanes of a block: sums, and loops by how many there are. */
 #ifndef SUNFLECK_LANES_H
 #define SUNFLECK_LANES_H
 
 #include "coordinates.h"
 #include "platform.h"
+
+/* Calls f(width, ...), which is inlined, with the width of a batch's blocks as a constant: each has loops of its own.
+ */
+#define SF_AT_WIDTH(width, f, ...)                \
+    switch (width) {                              \
+        case 1: f(1, __VA_ARGS__); break;         \
+        case 2: f(2, __VA_ARGS__); break;         \
+        case 4: f(4, __VA_ARGS__); break;         \
+        case 8: f(8, __VA_ARGS__); break;         \
+        default: f(SF_LANES, __VA_ARGS__); break; \
+    }
 
 /* The sum of 16 numbers, halved in a fixed order that vectorizes. */
 static inline double sf_sum16(const double x[SF_LANES]) {

@@ -47,7 +47,7 @@ static sf_status lay_out_cells(sf_rounds *r, sf_error *error) {
     r->tile_y0 = y0 / r->tile_cells * r->tile_cells;
     r->tile_columns = (x0 + film->cell_columns - r->tile_x0 + r->tile_cells - 1) / r->tile_cells;
     r->tile_rows = (y0 + film->cell_rows - r->tile_y0 + r->tile_cells - 1) / r->tile_cells;
-    size_t cells = sf_rounds_cell_count(r), tiles = (size_t)r->tile_columns * r->tile_rows;
+    size_t cells = sf_film_cell_count(r->film), tiles = (size_t)r->tile_columns * r->tile_rows;
     r->open = malloc(cells * sizeof *r->open);
     r->active = malloc(cells * sizeof *r->active);
     r->tiles = malloc(tiles * sizeof *r->tiles);

@@ -44,11 +44,7 @@ static void report_round(sf_rounds *r) {
 /* ---- checkpoints ---- */
 
 sf_checkpoint sf_rounds_checkpoint(sf_rounds *r) {
-    return (sf_checkpoint){.film = r->film,
-                           .open = r->open,
-                           .active = r->active,
-                           .cells = sf_rounds_cell_count(r),
-                           .notes = sf_goal_notes(r->goal)};
+    return (sf_checkpoint){.film = r->film, .open = r->open, .active = r->active, .notes = sf_goal_notes(r->goal)};
 }
 
 /* Writes the state; a failure is a notice, and the next write is tried in its time. */
@@ -231,7 +227,7 @@ static void close_all(sf_rounds *r) {
     r->sampled = sf_atomic_load(&r->state);
     bool spent = r->second && r->sampled == SF_SPENT; /* what the pilot left out keeps its reason */
     if (!spent) r->film->untouched = (uint8_t)unmet_reason(r, false, r->sampled);
-    memcpy(r->active, r->open, sf_rounds_cell_count(r) * sizeof *r->active);
+    memcpy(r->active, r->open, sf_film_cell_count(r->film) * sizeof *r->active);
     sf_rounds_list_tiles(r);
     sf_pool_run(r->pool, r->tile_count, decide_tile, sf_rounds_wake, r);
 }
@@ -265,7 +261,7 @@ static void run_stage(sf_rounds *r) {
 /* From the pilot to the second set: every pixel is to have as many samples again, and begins anew. */
 static void begin_second(sf_rounds *r) {
     sf_film *film = r->film;
-    for (uint32_t cell = 0; cell < sf_rounds_cell_count(r); ++cell) {
+    for (uint32_t cell = 0; cell < sf_film_cell_count(r->film); ++cell) {
         for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m) {
             uint32_t x = sf_rounds_x(r, cell, m), y = sf_rounds_y(r, cell, m);
             if (x >= film->width || y >= film->height) continue;

@@ -72,13 +72,9 @@ typedef struct sf_rounds {
     sf_error checkpoint_error;
 } sf_rounds;
 
-static inline size_t sf_rounds_cell_count(const sf_rounds *r) {
-    return (size_t)r->film->cell_columns * r->film->cell_rows;
-}
-
 static inline uint64_t sf_rounds_count(const sf_rounds *r, const uint64_t *cells) {
     uint64_t count = 0;
-    for (size_t i = 0; i < sf_rounds_cell_count(r); ++i)
+    for (size_t i = 0; i < sf_film_cell_count(r->film); ++i)
         count += sf_count_bits((uint32_t)cells[i]) + sf_count_bits((uint32_t)(cells[i] >> 32));
     return count;
 }
