@@ -482,7 +482,8 @@ static uint32_t list_emitters(sf_batch *b, const sf_scene *scene, size_t first, 
     return emitters;
 }
 
-/* The densities of what the rays hit, as from where they started: the vertices are what they were. */
+/* The densities of what the rays hit, as from where they started: the vertices are what they were, or were
+ * moved with the rays (order_kernels.c). */
 static void weigh_by_tree(shape_lanes *SF_RESTRICT lanes, const sf_batch *b, const sf_scene *scene, size_t first,
                           uint32_t emitters) {
     const sf_light_table *lights = &scene->lights;

@@ -28,6 +28,12 @@ static void move_floats(sf_batch *b, float *SF_RESTRICT array, uint32_t count) {
     memcpy(array, b->gather, count * sizeof *array);
 }
 
+/* `bin` has been read by then: it is the scratch. */
+static void move_integers(sf_batch *b, uint32_t *SF_RESTRICT array, uint32_t count) {
+    for (uint32_t i = 0; i < count; ++i) b->bin[i] = array[b->order[i]];
+    memcpy(array, b->bin, count * sizeof *array);
+}
+
 static uint32_t compact(sf_batch *b, uint32_t count) {
     uint32_t kept = list_alive(b, count);
     if (kept == count) return kept;
@@ -76,6 +82,30 @@ static void bin_surface_rays(sf_batch *b, const float *middle, uint32_t count) {
     }
 }
 
+/* Moves the vertices that the surface rays leave as these were moved. Only the light tree still reads them: it
+ * weighs a light that a ray hits as it would have chosen it from there. What else describes a vertex is of no
+ * use from now on until new ones are placed; builds that are tested make it no number, so that a stage that
+ * reads it fails. */
+static void move_vertices_left(sf_batch *b, const sf_scene *scene, uint32_t count) {
+    bool scatter = sf_plan_has(&scene->plan, SF_STAGE_SCATTER);
+    if (scene->lights.tree) {
+        for (int c = 0; c < 3; ++c) {
+            move_floats(b, b->point[c], count);
+            move_floats(b, b->normal[c], count);
+        }
+        if (scatter) move_integers(b, b->surface, count);
+    }
+#ifdef SUNFLECK_POISON
+    for (int c = 0; c < 3 && !scene->lights.tree; ++c) {
+        memset(b->point[c], 0xff, sizeof b->point[c]);
+        memset(b->normal[c], 0xff, sizeof b->normal[c]);
+    }
+    for (int c = 0; c < 3; ++c) memset(b->outgoing[c], 0xff, sizeof b->outgoing[c]);
+    memset(b->lift, 0xff, sizeof b->lift);
+    memset(b->light_pdf, 0xff, sizeof b->light_pdf);
+#endif
+}
+
 static uint32_t sort_surface_rays(sf_batch *b, const sf_scene *scene, uint32_t count) {
     uint32_t place[SURFACE_BINS + 2] = {0};
     bin_surface_rays(b, scene->middle, count);
@@ -88,8 +118,8 @@ static uint32_t sort_surface_rays(sf_batch *b, const sf_scene *scene, uint32_t c
         move_floats(b, b->throughput[c], count);
     }
     move_floats(b, b->pdf, count);
-    for (uint32_t i = 0; i < count; ++i) b->bin[i] = b->path[b->order[i]];
-    memcpy(b->path, b->bin, count * sizeof *b->path);
+    move_integers(b, b->path, count);
+    move_vertices_left(b, scene, count);
     b->in_place = false;
     return count;
 }
