@@ -45,6 +45,7 @@ from sunfleck.scene import Camera, Plan, PlanDimensions, Scene, SceneInfo
 from sunfleck.shapes import Disk, Sphere
 from sunfleck.show import show
 from sunfleck.sky import Environment, Sun
+from sunfleck.source import Limits
 from sunfleck.tolerance import Tolerance
 
 if TYPE_CHECKING:
@@ -89,6 +90,7 @@ __all__ = [
     "Instances",
     "Integral",
     "IntegralLook",
+    "Limits",
     "Mesh",
     "Mirror",
     "Moments",
