@@ -19,22 +19,20 @@ from numpy.typing import NDArray
 
 import sunfleck as sf
 from sunfleck import _core
-from sunfleck._files import replacing, writable_target
+from sunfleck._files import ending, replacing, writable_target
 from sunfleck.cli_chart import add_chart
 from sunfleck.cli_gallery import add_gallery
 from sunfleck.cli_lab import add_lab
+from sunfleck.cli_scene import add_environment, add_scene, scene_of
+from sunfleck.exposure import exposure_of
 from sunfleck.figure import FIGURE_TYPES, require_matplotlib
 from sunfleck.heatmap import HEATMAPS
-from sunfleck.image import IMAGE_TYPES, RADIANCE_TYPES, read_radiance
-from sunfleck.load import FILE_TYPES, scene_by_name, z_is_up
-from sunfleck.scenes import SCENES
+from sunfleck.image import IMAGE_TYPES
 
 __all__ = ["main"]
 
 INTERRUPTED = 130  # 128 + SIGINT, as shells have it
 POINT_TYPES = (".npy", ".csv", ".txt")
-
-_SCENE_HELP = f"a built-in scene ({', '.join(SCENES)}; default penumbra) or a file ({', '.join(FILE_TYPES)})"
 
 _RENDER_EXAMPLES = """\
 examples:
@@ -44,6 +42,8 @@ examples:
       coarser, with more samples allowed where it is hard; two files of one picture
   sunfleck render room.glb --spp 64 --width 1280 --height 720 -o room.png
       a fixed count of samples a pixel
+  sunfleck render room.glb --camera kitchen --exposure auto -o kitchen.png
+      by another of the file's cameras, as bright as it takes
   sunfleck render defocus --seconds 10 -o out.exr
       as good as ten seconds allow
   sunfleck render --heatmap samples,half_width,stop_reason -o out.png
@@ -91,7 +91,7 @@ def _add_render(commands: argparse._SubParsersAction[_Parser]) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.set_defaults(run=_render)
-    parser.add_argument("scene", nargs="?", default="penumbra", metavar="SCENE", help=_SCENE_HELP)
+    add_scene(parser)
     add = parser.add_argument
     add("-o", "--output", action="append", metavar="FILE", help=".exr or .png; default SCENE.exr; may be repeated")
     add(
@@ -102,14 +102,12 @@ def _add_render(commands: argparse._SubParsersAction[_Parser]) -> None:
     )
     add("--width", type=int, default=512, metavar="N", help="of the full frame, in pixels; default 512")
     add("--height", type=int, default=512, metavar="N", help="default 512")
-    add("--environment", metavar="FILE", help=f"light from all around: {', '.join(RADIANCE_TYPES)}, latitude-longitude")
     add(
-        "--rotation",
-        type=float,
-        default=0.0,
-        metavar="A",
-        help="turns it about the scene's up axis, degrees; default 0",
+        "--exposure",
+        metavar="STOPS|auto",
+        help="of each .png: brighter by 2^STOPS; default 0, or auto where the file's light is in photometric units",
     )
+    add_environment(parser)
 
     accuracy = parser.add_argument_group("accuracy, samples and time (default: --tolerance 0.01)")
     add = accuracy.add_argument
@@ -172,7 +170,7 @@ def _add_plan(commands: argparse._SubParsersAction[_Parser]) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.set_defaults(run=_plan)
-    parser.add_argument("scene", nargs="?", default="penumbra", metavar="SCENE", help=_SCENE_HELP)
+    add_scene(parser)
 
 
 def _parser() -> _Parser:
@@ -196,16 +194,15 @@ def _parser() -> _Parser:
     return parser
 
 
-def _scene(name: str, environment: str | None = None, rotation: float = 0.0) -> sf.Scene:
-    if environment is None:
-        return scene_by_name(name)
-    image = read_radiance(environment)
-    if name not in SCENES:
-        up = (0, 0, 1) if z_is_up(name) else (0, 1, 0)
-        return sf.load(name, environment=sf.Environment(image, up, rotation))
-    scene = SCENES[name]()
-    around = sf.Environment(image, scene.camera.up, rotation)  # the built-in cameras' up is their scene's
-    return sf.Scene(scene.shapes, scene.camera, scene.background, scene.max_bounces, environment=around)
+def _exposure(text: str | None, outputs: Sequence[str]) -> float | str | None:
+    if text is None:
+        return None
+    if not any(ending(output) == ".png" for output in outputs):
+        raise ValueError(f"--exposure is {text!r}; it is of a .png, and the output is {', '.join(outputs)}")
+    try:
+        return exposure_of(text if text == "auto" else float(text))
+    except ValueError:
+        raise ValueError(f"--exposure is {text!r}; give stops from -100 to 100, or auto") from None
 
 
 def _heatmaps(names: str, output: str) -> dict[str, Path]:
@@ -226,6 +223,7 @@ def _render(given: argparse.Namespace) -> int:
     outputs = given.output or [f"{Path(given.scene).stem}.exr"]
     for output in outputs:
         writable_target(output, "pictures", IMAGE_TYPES)  # refused now rather than after the work
+    exposure = _exposure(given.exposure, outputs)
     heatmaps = _heatmaps(given.heatmap, outputs[0])
     failure = None
     try:
@@ -233,7 +231,7 @@ def _render(given: argparse.Namespace) -> int:
     except sf.CheckpointError as error:  # the picture is there all the same, and is saved first
         image, failure = error.image, error
     for output in outputs:
-        image.save(output)
+        image.save(output, exposure if ending(output) == ".png" else None)
     for name, path in heatmaps.items():
         image.heatmap(name).save(path)
     print(image.summary())
@@ -247,7 +245,7 @@ def _render(given: argparse.Namespace) -> int:
 
 def _rendered(given: argparse.Namespace) -> sf.Image:
     return sf.render(
-        _scene(given.scene, given.environment, given.rotation),
+        scene_of(given),
         given.width,
         given.height,
         spp=given.spp,
@@ -305,7 +303,7 @@ def _points(given: argparse.Namespace) -> int:
 
 
 def _plan(given: argparse.Namespace) -> int:
-    print(_scene(given.scene).plan())
+    print(scene_of(given).plan())
     return 0
 
 

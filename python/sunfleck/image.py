@@ -14,10 +14,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sunfleck._files import FilePath, ending, given_path, replacing, writable_target
+from sunfleck.source import Limits, Source
 
 __all__ = [
     "IMAGE_TYPES",
     "RADIANCE_TYPES",
+    "encode_color",
     "encode_srgb",
     "false_color",
     "png_bytes",
@@ -113,10 +115,11 @@ def _exr(channels: Channels) -> NDArray[np.float32]:
     return pixels
 
 
-def _png(channels: Channels) -> NDArray[np.uint8]:
-    """R, G and B as 8-bit sRGB; nothing else is kept."""
+def encode_color(channels: Channels, stops: float = 0.0) -> NDArray[np.uint8]:
+    """R, G and B times 2^stops as 8-bit sRGB, shape (h, w, 3); nothing else is kept."""
     named = dict(channels)
-    return np.stack([encode_srgb(named[name]) for name in "RGB"], axis=-1)
+    with np.errstate(over="ignore"):  # becomes infinite, which is white
+        return np.stack([encode_srgb(named[name] * np.float32(2.0**stops)) for name in "RGB"], axis=-1)
 
 
 def _write(path: FilePath, pixels: NDArray[Any], names: Sequence[str], attributes: Mapping[str, str]) -> None:
@@ -144,11 +147,11 @@ def _write(path: FilePath, pixels: NDArray[Any], names: Sequence[str], attribute
             raise OSError(f"can't write {str(path)!r}: {' '.join(reason.split())}")
 
 
-def write_channels(path: FilePath, channels: Channels, attributes: Mapping[str, str]) -> None:
+def write_channels(path: FilePath, channels: Channels, attributes: Mapping[str, str], stops: float = 0.0) -> None:
     """Writes a film's list of channels, by the path's ending.
 
     ``.exr``: one part, float32, linear, every channel in order, and every attribute as
-    "sunfleck:NAME". ``.png``: 8 bits, R, G and B, sRGB, values beyond [0, 1] clipped.
+    "sunfleck:NAME". ``.png``: 8 bits, R, G and B times 2^stops, sRGB, values beyond [0, 1] clipped.
 
     The file is written beside and renamed, so that a failure leaves whatever was there.
 
@@ -161,16 +164,16 @@ def write_channels(path: FilePath, channels: Channels, attributes: Mapping[str, 
     """
     writable_target(path, "pictures", IMAGE_TYPES)  # before the pixels are put together
     if ending(path) == ".png":
-        _write(path, _png(channels), "RGB", {})
+        _write(path, encode_color(channels, stops), "RGB", {})
     else:
         _write(path, _exr(channels), [name for name, _ in channels], attributes)
 
 
-def png_bytes(channels: Channels) -> bytes:
+def png_bytes(channels: Channels, stops: float = 0.0) -> bytes:
     """What `write_channels` writes into a .png."""
     with tempfile.TemporaryDirectory(prefix="sunfleck-") as folder:  # OpenImageIO's Python writes files only
         path = Path(folder, "picture.png")
-        write_channels(path, channels, {})
+        write_channels(path, channels, {}, stops)
         return path.read_bytes()
 
 
@@ -188,13 +191,15 @@ def write_false_color(path: FilePath, values: ArrayLike, low: float | None = Non
     _write(path, false_color(values, low, high), "RGB", {})
 
 
-def read_radiance(path: FilePath) -> NDArray[np.float32]:
+def read_radiance(path: FilePath, limits: Limits | None = None) -> NDArray[np.float32]:
     """The first three channels of a file of linear values; a single one stands for all three.
 
     Parameters
     ----------
     path : path-like
         Ending in .exr, .hdr or .pfm.
+    limits : Limits, optional
+        Of its pixels and bytes. None: ``Limits()``.
 
     Returns
     -------
@@ -203,22 +208,29 @@ def read_radiance(path: FilePath) -> NDArray[np.float32]:
     Raises
     ------
     ValueError
-        Another ending, or two channels.
+        Another ending, or two channels; a picture beyond the limits.
     OSError
-        The file can't be read; with the reason.
+        The file can't be read, or is no ordinary file; with the reason.
     """
     given = given_path(path)
     if ending(given) not in RADIANCE_TYPES:
         raise ValueError(
             f"{given!r} ends in {ending(given)!r}; radiance is read from {', '.join(RADIANCE_TYPES)}, which are linear"
         )
-    with open(given, "rb"):  # the system's own words where that fails
-        pass
+    file = Source(given, limits=limits)
+    file.check()
     import OpenImageIO as oiio
 
     source = oiio.ImageInput.open(given)
     if not source:
         raise OSError(f"can't read {given!r}: {' '.join(oiio.geterror().split())}")
+    spec = source.spec()
+    try:
+        file.take_picture(spec.width, spec.height)
+        file.take_bytes(4 * spec.width * spec.height * (spec.nchannels + 3))
+    except ValueError as error:
+        source.close()
+        raise ValueError(f"{given!r}: {error}") from error
     pixels = source.read_image(oiio.FLOAT)
     reason = source.geterror()
     source.close()

@@ -12,29 +12,27 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sunfleck._arguments import Vector, vector
-from sunfleck._files import FilePath, given_path
+from sunfleck._arguments import vector
+from sunfleck._files import FilePath
+from sunfleck.bounds import Box, box_of
 from sunfleck.gltf import Contents, View, read_gltf
+from sunfleck.instances import Instances
+from sunfleck.lamp import choose_lamp, emits
 from sunfleck.mesh import Mesh
 from sunfleck.scene import Camera, Scene
 from sunfleck.scenes import SCENES
 from sunfleck.sky import Environment
+from sunfleck.source import Limits, Source
 
 __all__ = ["FILE_TYPES", "load", "scene_by_name", "z_is_up"]
 
 _log = logging.getLogger("sunfleck")
 
-# Of the default camera and light, in a frame whose y is up and whose z is the model's front. The
-# camera's angle and distance show the whole bounding sphere; the light lies outside of it, to the
-# left and in front, where its irradiance at the centre is 10 * (1.5 / 2.5)^2 = 3.6.
+# Of the default camera, in a frame whose y is up and whose z is the model's front. Its angle and
+# distance show the whole bounding sphere.
 _FOV = 40.0
 _CAMERA_DIRECTION = (0.5, 0.4, 1.0)
-_LIGHT_DIRECTION = (-0.6, 1.0, 0.6)
-_LIGHT_DISTANCE = 2.5  # of the bounding sphere's radius
-_LIGHT_SIDE = 1.5  # likewise
-_RADIANCE = 10.0
 
 
 def _decode(data: bytes) -> bytes:
@@ -60,18 +58,19 @@ def _colors(material: Any) -> dict[str, Any]:
     return colors
 
 
-def _read_by_trimesh(path: Path) -> Contents:
+def _read_by_trimesh(source: Source) -> Contents:
     import trimesh
 
+    path = source.path
     kind = path.suffix[1:].lower()
-    data = path.read_bytes()
+    data = source.read()
     scene = trimesh.load_scene(
         io.BytesIO(_decode(data) if kind == "obj" else data),
         file_type=kind,
         process=False,
         resolver=trimesh.resolvers.FilePathResolver(str(path)),
     )
-    meshes = []
+    meshes: list[Mesh | Instances] = []
     for geometry in scene.geometry.values():
         if not isinstance(geometry, trimesh.Trimesh) or len(geometry.faces) == 0:
             _log.info("%s: points and lines are left out", path)
@@ -82,7 +81,7 @@ def _read_by_trimesh(path: Path) -> Contents:
 
 
 # Ending: the reader, and whether z is up (else y).
-FILE_TYPES: dict[str, tuple[Callable[[Path], Contents], bool]] = {
+FILE_TYPES: dict[str, tuple[Callable[[Source], Contents], bool]] = {
     ".obj": (_read_by_trimesh, False),
     ".ply": (_read_by_trimesh, True),
     ".stl": (_read_by_trimesh, True),
@@ -91,12 +90,13 @@ FILE_TYPES: dict[str, tuple[Callable[[Path], Contents], bool]] = {
 }
 
 
-def _read(path: Path) -> Contents:
+def _read(source: Source) -> Contents:
     """The reader's answer, or its refusal under the file's name; readers trip in many ways."""
+    path = source.path
     reader, _ = FILE_TYPES[path.suffix.lower()]
     try:
         with np.errstate(all="ignore"):  # what comes out not finite is refused with the mesh or camera
-            return reader(path)
+            return reader(source)
     except (OSError, MemoryError):
         raise
     except NotImplementedError as error:
@@ -107,44 +107,79 @@ def _read(path: Path) -> Contents:
         raise ValueError(f"{path}: malformed ({type(error).__name__}: {error})") from error
 
 
-def _direction(value: Vector, z_up: bool) -> NDArray[np.float64]:
-    x, y, z = value
-    direction = np.array((x, -z, y) if z_up else value, dtype=np.float64)
+def _default_camera(box: Box, z_up: bool) -> Camera:
+    x, y, z = _CAMERA_DIRECTION
+    direction = np.array((x, -z, y) if z_up else (x, y, z))
     direction /= np.linalg.norm(direction)
-    return direction
+    position = box.centre + box.radius / np.sin(np.radians(_FOV / 2)) * direction
+    up = (0, 0, 1) if z_up else (0, 1, 0)
+    return Camera(vector("", position), vector("", box.centre), up=up, vertical_fov=_FOV)
 
 
-def _default_camera(centre: NDArray[np.float64], radius: float, z_up: bool) -> Camera:
-    distance = radius / np.sin(np.radians(_FOV / 2))
-    position = centre + distance * _direction(_CAMERA_DIRECTION, z_up)
-    return Camera(vector("", position), vector("", centre), up=(0, 0, 1) if z_up else (0, 1, 0), vertical_fov=_FOV)
-
-
-def _default_light(centre: NDArray[np.float64], radius: float, z_up: bool) -> Mesh:
-    towards = _direction(_LIGHT_DIRECTION, z_up)
-    x = np.cross((0, 0, 1) if z_up else (0, 1, 0), towards)
-    x *= _LIGHT_SIDE * radius / 2 / np.linalg.norm(x)
-    y = np.cross(towards, x)
-    middle = centre + _LIGHT_DISTANCE * radius * towards
-    corners = [middle - x - y, middle - x + y, middle + x + y, middle + x - y]  # wound to face the model
-    return Mesh(corners, [[0, 1, 2], [0, 2, 3]], albedo=(0, 0, 0), emission=(_RADIANCE,) * 3)
-
-
-def _camera_of(view: View, centre: NDArray[np.float64], radius: float) -> Camera:
+def _camera_of(view: View, box: Box) -> Camera:
     """The file's camera; its target, which sets no more than the focus, at the model's depth."""
     length = float(np.linalg.norm(view.direction))
     if not 0 < length < np.inf:
         raise ValueError(f"the camera looks along {view.direction}, which is no direction")
     direction = np.asarray(view.direction) / length
-    depth = max(float((centre - view.position) @ direction), radius)
+    depth = max(float((box.centre - view.position) @ direction), box.radius)
     return Camera(view.position, vector("", view.position + depth * direction), view.up, vertical_fov=view.vertical_fov)
 
 
-def _bounds(meshes: list[Mesh]) -> tuple[NDArray[np.float64], float]:
-    """Centre and radius of the sphere about the box about everything."""
-    lower = np.min([mesh.vertices.min(axis=0) for mesh in meshes], axis=0).astype(np.float64)
-    upper = np.max([mesh.vertices.max(axis=0) for mesh in meshes], axis=0).astype(np.float64)
-    return (lower + upper) / 2, float(np.linalg.norm(upper - lower) / 2)
+def _names(views: list[View]) -> str:
+    return ", ".join(f"{number} {view.name!r}" for number, view in enumerate(views))
+
+
+def _chosen(views: list[View], wanted: str | int | None) -> int:
+    """The number of the camera that is wanted, by its name or number; the first, where none is.
+
+    Raises
+    ------
+    ValueError
+        There is no such camera, or there are several.
+    """
+    if wanted is None:
+        return 0
+    found = [k for k, view in enumerate(views) if (view.name if isinstance(wanted, str) else k) == wanted]
+    if not found and isinstance(wanted, str) and wanted.isdecimal() and int(wanted) < len(views):
+        return int(wanted)
+    if len(found) != 1:
+        there = f"the file's are {_names(views)}" if views else "the file has none that is read"
+        several = "; several have that name, so give a number" if found else ""
+        raise ValueError(f"there is no one camera {wanted!r}; {there}{several}")
+    return found[0]
+
+
+def _camera(file: Path, views: list[View], wanted: str | int | None, box: Box) -> tuple[Camera, float]:
+    """And the frame's width over its height that it is made for."""
+    try:
+        number = _chosen(views, wanted)
+        camera = _camera_of(views[number], box) if views else _default_camera(box, z_is_up(file))
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}") from error
+    if not views:
+        _log.info(
+            "%s: no camera in it; one of %g degrees at (%.4g, %.4g, %.4g) looks at (%.4g, %.4g, %.4g)",
+            *(file, camera.vertical_fov, *camera.position, *camera.target),
+        )
+    elif len(views) > 1 and wanted is None:
+        _log.info("%s: %d cameras: %s; the first is taken, camera= chooses", file, len(views), _names(views))
+    return camera, views[number].aspect if views else 1.0
+
+
+def _add_lamp(file: Path, contents: Contents, camera: Camera, aspect: float, box: Box) -> None:
+    """What the file's light leaves dark is lit by one more mesh."""
+    z_up, lit = z_is_up(file), any(map(emits, contents.meshes))
+    lamp, share = choose_lamp(contents.meshes, camera, box, z_up=z_up, aspect=aspect)
+    if lamp is None:
+        return
+    up = np.array((0.0, 0.0, 1.0) if z_up else (0.0, 1.0, 0.0))
+    contents.meshes.append(lamp.mesh(up))
+    why = f"its light reaches {100 * share:.1f} % of what the camera sees" if lit else "no light in it"
+    _log.info(
+        "%s: %s; a square of side %.4g and radiance %.4g shines from (%.4g, %.4g, %.4g)",
+        *(file, why, lamp.side, lamp.radiance, *lamp.middle),
+    )
 
 
 def z_is_up(path: FilePath) -> bool:
@@ -152,32 +187,48 @@ def z_is_up(path: FilePath) -> bool:
     return FILE_TYPES.get(Path(path).suffix.lower(), (None, False))[1]
 
 
-def load(path: FilePath, *, environment: Environment | None = None) -> Scene:
+def load(
+    path: FilePath,
+    *,
+    camera: str | int | None = None,
+    environment: Environment | None = None,
+    allow_outside: bool = False,
+    limits: Limits | None = None,
+) -> Scene:
     """A scene of the triangles in a file.
 
     Parameters
     ----------
     path : path-like
         Ending in .obj, .ply, .stl, .gltf or .glb.
+    camera : str or int, optional
+        One of the file's cameras, by its name (its node's, or else its own) or by its number in the order of the
+        scene's nodes, from 0. None: the first.
     environment : Environment, optional
-        Light from all around, which takes the place of the light that a file without one gets.
+        Light from all around, which takes the place of the lamp that a file without light gets.
+    allow_outside : bool
+        Whether the file may refer to files outside of its folder: by absolute paths, by ``..``, or by symbolic
+        links that lead there. Such a file may be anybody's who reads what comes of it.
+    limits : Limits, optional
+        How much the file may ask for. None: ``Limits()``.
 
     Returns
     -------
     Scene
-        With 5 bounces and a black background. Another camera, say, is one line away:
-        ``sf.Scene(scene.meshes, camera)``.
+        With 5 bounces and a black background. Another setting is one line away, say:
+        ``sf.Scene(scene.shapes, scene.camera, suns=scene.suns, max_bounces=9)``.
 
     Raises
     ------
     ValueError
-        An unknown ending; a malformed file; a file without triangles.
+        An unknown ending; a malformed file; a file without triangles; one that refers to files outside of its
+        folder, or asks for more than the limits; a camera that is not in it.
     NotImplementedError
         A glTF that requires an extension or version that is not read.
     OSError
-        The file, or one that it refers to, can't be read.
+        The file, or one that it refers to, can't be read, or is no ordinary file (a pipe, a device).
     TypeError
-        ``path`` is not a path.
+        ``path`` is not a path; another argument of the wrong kind.
     MemoryError, sunfleck.Error
         As `Scene`.
 
@@ -191,14 +242,21 @@ def load(path: FilePath, *, environment: Environment | None = None) -> Scene:
     rougher metal, materials without pbrMetallicRoughness, and those with a texture of it. Glass
     refracts, as the border of a solid whose normals point out, also where the extension means a
     thin pane. Textures are not read: one of colour counts as 0.5. Alpha, coats and the like are
-    left out.
+    left out. Double-sided materials emit on both sides.
+
+    A mesh that several nodes of a glTF share, or that EXT_mesh_gpu_instancing repeats, becomes `Instances` where
+    more than 1000 triangles would be copied. Nodes of scale 0 are hidden.
 
     A file without a perspective camera gets one of 40 degrees that sees the whole model from the
     front, to the right and above. glTF's directional lights become suns of angle 0; point and spot
-    lights are left out, and their number is said. A file without emission and suns gets a square
-    light of radiance 10, as wide as 1.5 radii of the model, 2.5 radii from its centre, to the left,
-    above and in front. Both are said through ``logging`` under "sunfleck", at level INFO, as is all
-    that was left out. y is up in OBJ and glTF, z in PLY and STL.
+    lights are left out, and their number is said. Where a file has no suns, and what emits in it reaches less
+    than a tenth of what the camera sees (as a render of 48 x 48 pixels tells, with grey surfaces), it gets a lamp,
+    a square: of radiance 10, as wide as 1.5 radii of the model, 2.5 radii from its centre, to the left, above and
+    in front of the model, or else of the camera; in rooms a small one beside the camera. All of this is said
+    through ``logging`` under "sunfleck", at level INFO, as is all that was left out. y is up in OBJ and glTF, z in
+    PLY and STL.
+
+    Suns of a glTF are in lux. The scene's ``exposure`` is then "auto": see `Image.save`.
 
     Examples
     --------
@@ -208,45 +266,38 @@ def load(path: FilePath, *, environment: Environment | None = None) -> Scene:
         ...
     ValueError: 'room.max' ends in '.max'; files that can be loaded end in .obj, .ply, .stl, .gltf, .glb
     """
-    given = given_path(path)
-    file = Path(given)
+    source = Source(path, allow_outside=allow_outside, limits=limits)
+    if isinstance(camera, bool) or not isinstance(camera, (str, int, type(None))):
+        raise TypeError(f"camera is {camera!r}; give a name or a number")
+    if not isinstance(environment, (Environment, type(None))):
+        raise TypeError(f"environment is {environment!r}; give a sunfleck.Environment")
+    file = source.path
     if file.suffix.lower() not in FILE_TYPES:
-        raise ValueError(f"{given!r} ends in {file.suffix!r}; files that can be loaded end in {', '.join(FILE_TYPES)}")
-    if file.exists() and not file.is_file():
-        raise OSError(f"{given!r} is not a file")
-    contents = _read(file)
-    meshes, view = contents.meshes, contents.view
-    if not meshes:
+        raise ValueError(
+            f"{str(file)!r} ends in {file.suffix!r}; files that can be loaded end in {', '.join(FILE_TYPES)}"
+        )
+    contents = _read(source)
+    if not contents.meshes:
         raise ValueError(f"{file}: it holds no triangles")
-    centre, radius = _bounds(meshes)
-    if not radius > 0:
+    box = box_of(contents.meshes)
+    if not box.radius > 0:
         raise ValueError(f"{file}: all of it lies in one point")
-    z_up = FILE_TYPES[file.suffix.lower()][1]
-    if view is None:
-        camera = _default_camera(centre, radius, z_up)
-        _log.info(
-            "%s: no camera in it; one of %g degrees at (%.4g, %.4g, %.4g) looks at (%.4g, %.4g, %.4g)",
-            *(file, camera.vertical_fov, *camera.position, *camera.target),
-        )
-    else:
-        camera = _camera_of(view, centre, radius)
-    if environment is None and not contents.suns and not any(any(mesh.emission) for mesh in meshes):
-        light = _default_light(centre, radius, z_up)
-        meshes.append(light)
-        _log.info(
-            "%s: no light in it; a square of side %.4g and radiance %g shines from (%.4g, %.4g, %.4g)",
-            *(file, _LIGHT_SIDE * radius, _RADIANCE, *light.vertices.mean(axis=0)),
-        )
-    return Scene(meshes, camera, suns=contents.suns, environment=environment)
+    eye, aspect = _camera(file, contents.views, camera, box)
+    if environment is None and not contents.suns:
+        _add_lamp(file, contents, eye, aspect, box)
+    exposure = "auto" if contents.photometric else 0.0
+    return Scene(contents.meshes, eye, suns=contents.suns, environment=environment, exposure=exposure)
 
 
-def scene_by_name(name: str) -> Scene:
+def scene_by_name(name: str, **options: Any) -> Scene:
     """A built-in scene by its name, or a file's.
 
     Parameters
     ----------
     name : str
         One of `sunfleck.scenes.SCENES`, or a path.
+    **options
+        Of `load`; where any is given, but for None and False, a built-in scene is refused.
 
     Returns
     -------
@@ -255,7 +306,7 @@ def scene_by_name(name: str) -> Scene:
     Raises
     ------
     ValueError
-        Neither: no such scene, and no ending.
+        Neither: no such scene, and no ending; or options that are files' for a built-in scene.
     Exception
         As `load` raises.
 
@@ -267,4 +318,9 @@ def scene_by_name(name: str) -> Scene:
     """
     if name not in SCENES and not Path(name).suffix:
         raise ValueError(f"there is no scene {name!r}; give one of {', '.join(SCENES)}, or a file")
-    return SCENES[name]() if name in SCENES else load(name)
+    if name not in SCENES:
+        return load(name, **options)
+    given = [option for option, value in options.items() if value is not None and value is not False]
+    if given:
+        raise ValueError(f"{', '.join(given)} can be given for files; {name!r} is a built-in scene")
+    return SCENES[name]()

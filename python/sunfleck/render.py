@@ -18,11 +18,12 @@ from numpy.typing import ArrayLike, NDArray
 from sunfleck import _core
 from sunfleck._arguments import flag, integer, number, text
 from sunfleck._core import Progress
-from sunfleck._files import FilePath, given_path
+from sunfleck._files import FilePath, ending, given_path
 from sunfleck.error import CheckpointError
+from sunfleck.exposure import auto_exposure, clipped, exposure_of, stops
 from sunfleck.figure import Figure
 from sunfleck.heatmap import heatmap
-from sunfleck.image import png_bytes, write_channels, write_false_color
+from sunfleck.image import encode_color, png_bytes, write_channels, write_false_color
 from sunfleck.scene import Scene
 from sunfleck.tolerance import Tolerance
 
@@ -37,6 +38,8 @@ __all__ = [
     "merge",
     "render",
 ]
+
+_log = logging.getLogger("sunfleck")
 
 STOP_REASONS: tuple[str, ...] = tuple(_core.stop_reasons())
 """The names of the numbers in `Image.stop_reason`."""
@@ -197,6 +200,8 @@ class Image:
         Every option as it was used, the seed, version, instruction set, and what came of it.
     interrupted : bool
         Whether the render was stopped before its time, by Ctrl-C or by ``progress``.
+    exposure : float or "auto"
+        With which it is shown and saved as PNG where none is given: the scene's; see `save`.
 
     Notes
     -----
@@ -204,8 +209,9 @@ class Image:
     In a notebook an image shows its colours.
     """
 
-    def __init__(self, film: _core.Film) -> None:
+    def __init__(self, film: _core.Film, exposure: float | str = 0.0) -> None:
         self._film = film
+        self.exposure = exposure
         self.width: int = film.width
         self.height: int = film.height
         self.channels: list[tuple[str, NDArray[Any]]] = film.channels()
@@ -229,7 +235,7 @@ class Image:
         counts["goal"] = float(self.metadata["relmse"])
         return Summary(**counts, relative=share > 0 and share >= float(self.metadata["absolute_tolerance"]))
 
-    def save(self, path: FilePath) -> None:
+    def save(self, path: FilePath, exposure: float | str | None = None) -> None:
         """Writes the picture, by the path's ending.
 
         ``.exr``: one part, float32, linear: every channel, and the metadata as "sunfleck:NAME".
@@ -237,14 +243,50 @@ class Image:
 
         The file is written beside and renamed: a failure leaves whatever was there.
 
+        Parameters
+        ----------
+        path : path-like
+        exposure : float or "auto", optional
+            Of a PNG: its colours are the radiance times 2^exposure, so that 1 is twice as bright. "auto" brings
+            nine tenths of what is lit below 0.8 of white, and says through ``logging`` which number that is.
+            None: the image's own `exposure`, which is 0 but for files in photometric units.
+
         Raises
         ------
         ValueError
-            Another ending.
+            Another ending; an exposure out of its range, or of what is not a PNG.
+        TypeError
+            An exposure that is no number.
         OSError
             The file can't be written; with the reason.
         """
-        write_channels(path, self.channels, self.metadata)
+        chosen = self.exposure if exposure is None else exposure_of(exposure)
+        if ending(path) != ".png":
+            if exposure is not None:
+                raise ValueError(
+                    f"exposure is {exposure!r}; {os.fspath(path)!r} holds radiance, only a .png is exposed"
+                )
+            write_channels(path, self.channels, self.metadata)
+            return
+        number = stops(chosen, self.color)
+        write_channels(path, self.channels, self.metadata, number)
+        if chosen == "auto":
+            _log.info("%s: exposure %.2f stops, chosen by what is lit", os.fspath(path), number)
+        self._tell_if_blank(os.fspath(path), number)
+
+    def _tell_if_blank(self, path: str, exposure: float) -> None:
+        """Says why a PNG is wholly white or black though the picture is not."""
+        if not self.color.any():
+            return  # which `render` has said
+        encoded, better = encode_color(self.channels, exposure), auto_exposure(self.color)
+        seen: NDArray[np.bool_] = np.any(self.color, axis=-1)
+        shown = "white" if clipped(encoded, seen) else "black" if not encoded.any() else ""
+        if shown:
+            _log.warning(
+                "%s: wholly %s with an exposure of %.4g stops, since most of what is lit has a radiance of about %.3g; "
+                "exposure='auto' would be %.4g",
+                *(path, shown, exposure, 0.8 * 2.0**-better, better),
+            )
 
     def save_map(self, channel: str, path: FilePath) -> None:
         """Writes one channel as a PNG in false colours: dark blue is low, yellow high, logarithmic.
@@ -301,7 +343,7 @@ class Image:
         return heatmap(dict(self.channels), channel, self.metadata)
 
     def _repr_png_(self) -> bytes:
-        return png_bytes(self.channels)
+        return png_bytes(self.channels, stops(self.exposure, self.color))
 
     def __repr__(self) -> str:
         return f"Image({self.width} x {self.height}, {int(self.samples.sum(dtype=np.uint64))} samples)"
@@ -590,24 +632,41 @@ def render(
         "mask": _mask(mask),
         "checkpoint": None if checkpoint is None else given_path(checkpoint),
         "checkpoint_seconds": number("checkpoint_seconds", checkpoint_seconds),
-        "notice": logging.getLogger("sunfleck").warning,
+        "notice": _log.warning,
     }
     if callable(progress):
         tell = progress
-        return _finished(_core.render(scene._core, progress=lambda p: tell(p) if p.round_finished else None, **options))
+        film = _core.render(scene._core, progress=lambda p: tell(p) if p.round_finished else None, **options)
+        return _finished(film, scene)
     if not progress:
-        return _finished(_core.render(scene._core, progress=None, **options))
+        return _finished(_core.render(scene._core, progress=None, **options), scene)
     bar = _Bar()
     try:
-        return _finished(_core.render(scene._core, progress=bar, **options))
+        return _finished(_core.render(scene._core, progress=bar, **options), scene)
     finally:
         bar.close()
 
 
-def _finished(film: _core.Film) -> Image:
+def _finished(film: _core.Film, scene: Scene) -> Image:
+    image = Image(film, scene.exposure)
     if film.failure:
-        raise CheckpointError(film.failure, Image(film))
-    return Image(film)
+        raise CheckpointError(film.failure, image)
+    if not scene._quiet and not image.color.any() and image.samples.any():
+        _log.warning("the picture is wholly black: %s", _why_black(image, scene))
+    return image
+
+
+def _why_black(image: Image, scene: Scene) -> str:
+    """The first reason that there is."""
+    if image.summary().nonfinite_samples:
+        return "samples were not finite, and were dropped"
+    if scene.info.light_count == 0 and not any(scene.background):
+        return "nothing in the scene shines: no emission, no suns, no environment, no background"
+    if not image.alpha.any():
+        return "the camera sees none of the shapes"
+    if scene.max_bounces == 0:
+        return "max_bounces is 0, and the camera sees no light itself"
+    return "the light does not reach what the camera sees: it faces away, or something stands between"
 
 
 def merge(images: Sequence[Image | FilePath]) -> Image:
@@ -624,7 +683,8 @@ def merge(images: Sequence[Image | FilePath]) -> Image:
     Returns
     -------
     Image
-        A pixel of n_i samples with half-widths h_i has half-width sqrt(sum (n_i h_i)^2) / sum n_i.
+        A pixel of n_i samples with half-widths h_i has half-width sqrt(sum (n_i h_i)^2) / sum n_i. The exposure
+        is that of the first image that is no file.
 
     Raises
     ------
@@ -650,7 +710,9 @@ def merge(images: Sequence[Image | FilePath]) -> Image:
     """
     if isinstance(images, (str, bytes, os.PathLike)) or not isinstance(images, Sequence):
         raise TypeError(f"images is {images!r}; give a list of images or checkpoint files")
+    exposures = [image.exposure for image in images if isinstance(image, Image)]
+    exposure = exposures[0] if exposures else 0.0
     films = [image._film if isinstance(image, Image) else _core.load_film(given_path(image)) for image in images]
     if len(films) == 1:  # as it is, a mask and AOVs too
-        return Image(films[0])
-    return Image(_core.merge_films(films))
+        return Image(films[0], exposure)
+    return Image(_core.merge_films(films), exposure)

@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 
 from sunfleck import _core
 from sunfleck._arguments import Vector, flag, integer, number, text, vector
+from sunfleck.exposure import exposure_of
 from sunfleck.fog import Fog
 from sunfleck.instances import Instances
 from sunfleck.mesh import Mesh
@@ -221,6 +222,8 @@ class Scene:
         10^7 rays within a closed box escapes.
     fog : Fog, optional
         Between the surfaces; not with a background, suns or an environment.
+    exposure : float or "auto"
+        With which its pictures are shown and written as PNG, where none is given; see `Image.save`.
 
     Raises
     ------
@@ -245,6 +248,8 @@ class Scene:
     1
     """
 
+    _quiet = False
+
     def __init__(
         self,
         meshes: Iterable[Shape],
@@ -259,6 +264,7 @@ class Scene:
         solid_angle_ratio: float = 1.0,
         robust: bool = False,
         fog: Fog | None = None,
+        exposure: float | str = 0.0,
     ) -> None:
         self._shapes = _list_of("meshes", meshes, (Mesh, Sphere, Disk, Instances))
         self._suns = _list_of("suns", suns, (Sun,))
@@ -276,6 +282,7 @@ class Scene:
         self._light_choice = text("light_choice", light_choice)
         self._solid_angle_ratio = number("solid_angle_ratio", solid_angle_ratio)
         self._robust = flag("robust", robust)
+        self._exposure = exposure_of(exposure)
         self._core = _core.Scene()
         self._add_shapes()
         self._core.set_camera(*camera._values())
@@ -313,6 +320,8 @@ class Scene:
 
     def _report(self) -> None:
         info = self._info
+        if self._quiet:
+            return
         if info.degenerate_count:
             _log.info("%d of %d triangles have no area", info.degenerate_count, info.triangle_count)
         if info.copied_bytes:
@@ -358,6 +367,11 @@ class Scene:
     @property
     def fog(self) -> Fog | None:
         return self._fog
+
+    @property
+    def exposure(self) -> float | str:
+        """Of its pictures, in stops, or "auto"."""
+        return self._exposure
 
     @property
     def camera(self) -> Camera:

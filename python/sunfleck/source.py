@@ -9,6 +9,7 @@ import os
 import stat
 from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import BinaryIO
 
 from sunfleck._arguments import flag, integer
 from sunfleck._files import FilePath, given_path
@@ -154,6 +155,17 @@ class Source:
         """
         return self._read(self.path, os.fspath(self.path))
 
+    def check(self) -> None:
+        """Whether the file itself can be read, for those that are read by another library.
+
+        Raises
+        ------
+        OSError
+            As `read`.
+        """
+        with _opened(self.path, os.fspath(self.path)):
+            pass
+
     def read_beside(self, reference: str) -> bytes:
         """All of a file that this one refers to.
 
@@ -165,19 +177,24 @@ class Source:
         return self._read(self.locate(reference), reference)
 
     def _read(self, path: Path, name: str) -> bytes:
-        # A pipe would wait for its other end, and a device may act: told by the name before, and once
-        # more when it is open, where nobody can exchange it any more.
-        if not stat.S_ISREG(os.stat(path).st_mode):
-            raise OSError(f"{name!r} is not a file that can be read as a whole")
-        with open(path, "rb", opener=_open_at_once) as file:
-            about = os.fstat(file.fileno())
-            if not stat.S_ISREG(about.st_mode):
-                raise OSError(f"{name!r} is not a file that can be read as a whole")
-            self.take_bytes(about.st_size)
-            data = file.read(about.st_size + 1)
-        if len(data) > about.st_size:
-            raise OSError(f"{name!r} has {about.st_size} bytes and gives more; it grows, or is no ordinary file")
+        with _opened(path, name) as file:
+            size = os.fstat(file.fileno()).st_size
+            self.take_bytes(size)
+            data = file.read(size + 1)
+        if len(data) > size:
+            raise OSError(f"{name!r} has {size} bytes and gives more; it grows, or is no ordinary file")
         return data
+
+
+def _opened(path: Path, name: str) -> BinaryIO:
+    """An ordinary file. A pipe would wait for its other end, and a device may act: told by the name before, and
+    once more when it is open, where nobody can exchange it any more."""
+    if stat.S_ISREG(os.stat(path).st_mode):
+        file = open(path, "rb", opener=_open_at_once)  # noqa: SIM115 (the caller closes it)
+        if stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            return file
+        file.close()
+    raise OSError(f"{name!r} is not a file that can be read as a whole")
 
 
 def _open_at_once(path: str, flags: int) -> int:

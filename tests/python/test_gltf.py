@@ -313,7 +313,7 @@ def change(path: str, value: Any) -> Any:
         (change("accessors/0/componentType", 1), ValueError, "1"),
         (change("accessors/0/byteOffset", 4), ValueError, "buffer"),
         (change("accessors/0/byteOffset", -4), ValueError, "reaches beyond"),
-        (change("accessors/0", {"count": 3, "componentType": 5126, "type": "VEC3"}), ValueError, "no data"),
+        (change("accessors/0", {"count": 3, "componentType": 5126, "type": "VEC3"}), ValueError, "one point"),
         (change("bufferViews/0/byteLength", 10**9), ValueError, "reaches beyond"),
         (change("bufferViews/0/buffer", 7), ValueError, r"buffers\[7\]"),
         (change("bufferViews/0/byteStride", 4), ValueError, "4 bytes apart"),

@@ -1,0 +1,269 @@
+# SPDX-FileCopyrightText: 2026 The Sunfleck developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""lamp: the light that a file gets whose own does not reach what the camera sees.
+
+A probe, a small render of the file's shapes, all of them diffuse and grey, tells how much of what the camera
+sees is lit: by the file's own light in red, by candidates for the lamp in green and blue.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sunfleck._arguments import Vector, vector
+from sunfleck.bounds import Box
+from sunfleck.instances import Instances
+from sunfleck.material import Dielectric
+from sunfleck.mesh import Mesh
+from sunfleck.render import render
+from sunfleck.scene import Camera, Scene
+from sunfleck.sky import Sun
+
+__all__ = ["LAMP_RADIANCE", "Lamp", "choose_lamp", "emits"]
+
+_Shapes = Sequence[Mesh | Instances]
+_Direction = NDArray[np.float64]
+
+# The lamp's irradiance at the model's centre is the same wherever it is.
+LAMP_RADIANCE = 10.0
+_DISTANCE = 2.5  # of the bounding sphere's radius
+_SIDE = 0.6  # of the distance
+_IRRADIANCE = LAMP_RADIANCE * _SIDE**2
+
+# Directions to the lamp: in a frame whose y is up and whose z is the model's front; and by the camera's right,
+# its up and the way back to it.
+_FROM_MODEL = (-0.6, 1.0, 0.6)
+_FROM_CAMERA = ((-0.5, 0.7, 1.0), (0.5, 0.7, 1.0))
+
+# Within rooms the lamp is moved off the camera, by so much of the middle depth that it sees; it is small there.
+_ASIDE = 0.35
+_INNER_SIDE = 0.15
+_INNER_RADIANCE = _IRRADIANCE / _INNER_SIDE**2
+
+_PIXELS, _SAMPLES, _BOUNCES = 48, 16, 4
+_GREY = 0.8
+
+# A lamp is added where the file's own light reaches less than this share of what is seen. A pixel counts as lit
+# from 15 of 255 in sRGB on.
+_OWN_SHARE = 0.1
+_DARK = 0.005
+
+# A candidate is good enough from the first share on, and possible from the second. It lights a pixel that has this
+# much of the radiance straight below it.
+_GOOD, _POSSIBLE = 0.5, 0.3
+_LIT = 0.04
+
+
+@dataclass(frozen=True)
+class Lamp:
+    """A square that shines towards a point: its middle, its side and its radiance."""
+
+    middle: _Direction
+    towards: _Direction
+    side: float
+    radiance: float
+
+    def mesh(self, up: _Direction, emission: Vector | None = None) -> Mesh:
+        """Wound to face the point."""
+        outward = self.middle - self.towards
+        outward /= np.linalg.norm(outward)
+        x = np.cross(up, outward)
+        if np.linalg.norm(x) < 1e-3:
+            x = np.cross(np.roll(up, 1), outward)
+        x *= self.side / 2 / np.linalg.norm(x)
+        y = np.cross(outward, x)
+        corners = [self.middle - x - y, self.middle - x + y, self.middle + x + y, self.middle + x - y]
+        glow = (self.radiance,) * 3 if emission is None else emission
+        return Mesh(corners, [[0, 1, 2], [0, 2, 3]], albedo=(0, 0, 0), emission=glow)
+
+
+class _View:
+    """A camera's directions, each of length 1, and the pyramid that it sees."""
+
+    def __init__(self, camera: Camera, aspect: float, up: _Direction) -> None:
+        self.camera, self.scene_up = camera, up
+        self.position = np.array(camera.position)
+        forward = np.array(camera.target) - self.position
+        self.forward = forward / np.linalg.norm(forward)
+        right = np.cross(self.forward, camera.up)
+        self.right = right / np.linalg.norm(right)
+        self.up = np.cross(self.right, self.forward)
+        self._half = np.tan(np.radians(camera.vertical_fov) / 2)
+        self._aspect = aspect if 0 < aspect < np.inf else 1.0
+
+    def direction(self, right: float, up: float, back: float) -> _Direction:
+        """Of length 1."""
+        direction = right * self.right + up * self.up - back * self.forward
+        unit: _Direction = direction / np.linalg.norm(direction)
+        return unit
+
+    def shows(self, lamp: Lamp) -> bool:
+        """Whether no side of the pyramid has all of the lamp beyond it."""
+        corners = lamp.mesh(self.scene_up).vertices - self.position
+        x, y, z = corners @ self.right / self._aspect, corners @ self.up, corners @ self.forward
+        edge = self._half * z
+        return not any(side.all() for side in (z < 0, x > edge, x < -edge, y > edge, y < -edge))
+
+
+def choose_lamp(
+    shapes: _Shapes, camera: Camera, box: Box, *, z_up: bool, aspect: float = 1.0
+) -> tuple[Lamp | None, float]:
+    """A lamp that lights what the camera sees, and the share of it that the file's own light reaches.
+
+    Parameters
+    ----------
+    shapes
+        The file's, which has no suns.
+    camera : Camera
+    box : Box
+        About the shapes.
+    z_up : bool
+        Whether z is up in the file, else y.
+    aspect : float
+        The width of the frame that the lamp is not to be seen in, over its height.
+
+    Returns
+    -------
+    Lamp or None
+        None: the file's own light suffices.
+    float
+        In [0, 1].
+
+    Notes
+    -----
+    It takes a scene of the shapes, and one more where no light from outside reaches what is seen: as long as
+    building the scene itself, and some ten milliseconds.
+    """
+    lit = any(map(emits, shapes))
+    first = 1 if lit else 0  # channel of the candidates
+    up = np.array((0.0, 0.0, 1.0) if z_up else (0.0, 1.0, 0.0))
+    view = _View(camera, aspect, up)
+    outer = [_from_model(box, z_up), *(_from_camera(box, view, towards) for towards in _FROM_CAMERA)][: 3 - first]
+    probe = _Probe(shapes, camera, lit)
+    depths = probe.look(
+        [Sun(vector("", lamp.middle - lamp.towards), 0, _color(first + k)) for k, lamp in enumerate(outer)]
+    )
+    share = probe.share_of_own() if lit else 0.0
+    if share >= _OWN_SHARE:
+        return None, share
+    if not len(depths):
+        return outer[0], share
+    seen = [view.shows(lamp) for lamp in outer]
+    shares = [0.0 if seen[k] else probe.share(first + k, _GREY / np.pi) for k in range(len(outer))]
+    return _best(outer, shares) or _inner(shapes, view, depths), share
+
+
+def _best(lamps: Sequence[Lamp], shares: Sequence[float]) -> Lamp | None:
+    """The first that is good, or else the one that lights most."""
+    good = [lamp for lamp, share in zip(lamps, shares, strict=True) if share >= _GOOD]
+    most = int(np.argmax(shares))
+    return good[0] if good else lamps[most] if shares[most] >= _POSSIBLE else None
+
+
+# ---- where a lamp may be ----
+
+
+def _from_model(box: Box, z_up: bool) -> Lamp:
+    x, y, z = _FROM_MODEL
+    direction = np.array((x, -z, y) if z_up else (x, y, z))
+    direction /= np.linalg.norm(direction)
+    return _outer(box, direction, _DISTANCE * box.radius)
+
+
+def _from_camera(box: Box, view: _View, towards: tuple[float, float, float]) -> Lamp:
+    """As far from the model as the one above, or else behind the camera, where that would be in its view."""
+    direction = view.direction(*towards)
+    lamp = _outer(box, direction, _DISTANCE * box.radius)
+    if not view.shows(lamp):
+        return lamp
+    camera = float((view.position - box.centre) @ -view.forward) / float(direction @ -view.forward)
+    return _outer(box, direction, max(_DISTANCE * box.radius, camera * (1 + _SIDE)))
+
+
+def _outer(box: Box, direction: _Direction, distance: float) -> Lamp:
+    return Lamp(box.centre + distance * direction, box.centre, _SIDE * distance, LAMP_RADIANCE)
+
+
+def _inner(shapes: _Shapes, view: _View, depths: NDArray[np.float64]) -> Lamp:
+    """A lamp in the room that the camera is in: beside or above it where that is within, else behind its lens."""
+    depth, nearest = float(np.median(depths)), float(depths.min())
+    side, towards = _INNER_SIDE * depth, view.position + depth * view.forward
+    middles = [view.position + _ASIDE * depth * view.direction(x, y, 0) for x, y in ((-1, 1), (1, 1), (0, 1))]
+    lamps = [Lamp(middle, towards, side, _INNER_RADIANCE) for middle in middles]
+    probe = _Probe(shapes, view.camera, False)
+    probe.look((), [lamp.mesh(view.scene_up, _color(k, lamp.radiance)) for k, lamp in enumerate(lamps)])
+    found = _best(lamps, [probe.share(k, _GREY / np.pi * _IRRADIANCE) for k in range(len(lamps))])
+    return found or Lamp(view.position - 1e-3 * nearest * view.forward, towards, side, _INNER_RADIANCE)
+
+
+# ---- the probe ----
+
+
+def _color(channel: int, level: float = 1.0) -> Vector:
+    red, green, blue = (level * (k == channel) for k in range(3))
+    return red, green, blue
+
+
+def emits(shape: Mesh | Instances) -> bool:
+    """Whether any of it does."""
+    return any(any(mesh.emission) for mesh in (shape.meshes if isinstance(shape, Instances) else (shape,)))
+
+
+class _Probe:
+    """Shapes without colour: grey, but for emitters, which are black and shine in red, if at all. Glass, which
+    lets light through, is left out where there is anything else."""
+
+    def __init__(self, shapes: _Shapes, camera: Camera, lit: bool) -> None:
+        self._camera, self._lit = camera, lit
+        self._greys: dict[int, Mesh] = {}
+        self._shapes = self._all_grey(shapes, False) or self._all_grey(shapes, True)
+
+    def _all_grey(self, shapes: _Shapes, with_glass: bool) -> list[Mesh | Instances]:
+        grey: list[Mesh | Instances] = []
+        for shape in shapes:
+            meshes = shape.meshes if isinstance(shape, Instances) else (shape,)
+            shown = [
+                self._grey(m) for m in meshes if with_glass or any(m.emission) or not isinstance(m.material, Dielectric)
+            ]
+            if shown:
+                grey.append(Instances(shown, shape.transforms) if isinstance(shape, Instances) else shown[0])
+        return grey
+
+    def _grey(self, mesh: Mesh) -> Mesh:
+        """The same one for the same mesh, so that instances share it."""
+        if id(mesh) not in self._greys:
+            emits = any(mesh.emission)
+            glow = _color(0, float(np.mean(mesh.emission)) if self._lit else 0.0)
+            self._greys[id(mesh)] = Mesh(mesh.vertices, mesh.triangles, (0.0 if emits else _GREY,) * 3, glow)
+        return self._greys[id(mesh)]
+
+    def look(self, suns: Sequence[Sun], emitters: Sequence[Mesh] = ()) -> NDArray[np.float64]:
+        """Renders; the depths along the camera's axis of what is seen and does not emit."""
+        bounces = _BOUNCES if self._lit else 1
+        scene = _QuietScene([*self._shapes, *emitters], self._camera, max_bounces=bounces, suns=suns)
+        image = render(scene, _PIXELS, _PIXELS, spp=_SAMPLES, aovs=("albedo", "depth"))
+        cover = image.aovs["albedo"][..., 0] / _GREY
+        seen = (cover > 0.5) & (image.alpha - cover < 0.02)  # no emitter in the pixel
+        self._color = (image.color / np.maximum(cover, 0.5)[..., None])[seen]
+        self._own = image.color[image.alpha > 0.5][:, 0]
+        depths: NDArray[np.float64] = image.aovs["depth"][seen].astype(np.float64)
+        return depths
+
+    def share(self, channel: int, full: float) -> float:
+        """Of the pixels seen that do not emit: those that have some of the radiance that a candidate gives in full."""
+        return float(np.mean(self._color[:, channel] > _LIT * full))
+
+    def share_of_own(self) -> float:
+        """Of the pixels seen, emitters too: those that the file's own light reaches."""
+        return float(np.mean(self._own > _DARK)) if self._own.size else 1.0
+
+
+class _QuietScene(Scene):
+    """A scene of which nothing is said, since the picture of it is not shown."""
+
+    _quiet = True
