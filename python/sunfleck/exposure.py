@@ -12,13 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sunfleck._arguments import number
+from sunfleck.image import encode_srgb
 
-__all__ = ["auto_exposure", "clipped", "exposure_of", "stops"]
+__all__ = ["auto_exposure", "blank", "exposure_of", "stops", "why_black"]
 
 # "auto" brings the radiance that this share of the lit pixels stay below to this value, so that the brightest
 # tenth, lamps and glints, may clip.
 _SHARE = 0.9
 _VALUE = 0.8
+
+_WHITE = 0.98  # of the pixels that are lit
 
 _LEAST, _MOST = -100.0, 100.0  # stops: 2^100 is 1.3e30, which single precision holds
 
@@ -61,7 +64,34 @@ def stops(exposure: float | str, color: NDArray[np.float32]) -> float:
     return auto_exposure(color) if isinstance(exposure, str) else exposure
 
 
-def clipped(encoded: NDArray[np.uint8], seen: NDArray[np.bool_]) -> bool:
-    """Whether an 8-bit picture is white wherever there is anything to see, but for one pixel in 50."""
-    white = (encoded == 255).all(axis=-1)[seen]
-    return bool(white.size) and float(white.mean()) >= 0.98
+def blank(color: NDArray[np.float32], exposure: float) -> str | None:
+    """Why a PNG with so many stops is wholly white or black though there is something to see; None where it is not.
+
+    White counts where anything is seen, but for one pixel in 50.
+    """
+    lit: NDArray[np.bool_] = np.any(color > 0, axis=-1)
+    if not lit.any():
+        return None  # which `render` has said
+    with np.errstate(over="ignore"):
+        encoded = encode_srgb(color * np.float32(2.0**exposure))
+    white = float((encoded == 255).all(axis=-1)[lit].mean()) >= _WHITE
+    if not white and encoded.any():
+        return None
+    better = auto_exposure(color)
+    return (
+        f"wholly {'white' if white else 'black'} with an exposure of {exposure:.4g} stops, since most of what is lit "
+        f"has a radiance of about {_VALUE * 2.0**-better:.3g}; exposure='auto' would be {better:.4g}"
+    )
+
+
+def why_black(*, any_dropped: bool, any_light: bool, any_surface: bool, max_bounces: int) -> str:
+    """Why a render is black: the first reason that there is."""
+    if any_dropped:
+        return "samples were not finite, and were dropped"
+    if not any_light:
+        return "nothing in the scene shines: no emission, no suns, no environment, no background"
+    if not any_surface:
+        return "the camera sees none of the shapes"
+    if max_bounces == 0:
+        return "max_bounces is 0, and the camera sees no light itself"
+    return "the light does not reach what the camera sees: it faces away, or something stands between"

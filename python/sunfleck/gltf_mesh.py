@@ -243,7 +243,7 @@ class Placed:
             if meetings <= 1 and not box.holds(eyes) and _closed_outward(mesh):  # it meets itself
                 continue
             self._document.source.take_triangles(len(mesh.triangles))
-            self._document.source.take_bytes(120 * len(mesh.vertices) + 48 * len(mesh.triangles))
+            self._document.source.take_bytes(120 * len(mesh.vertices) + 300 * len(mesh.triangles))
             backs.append(_turned_over(mesh, gap))
         return backs
 
@@ -294,9 +294,21 @@ def _closed_outward(mesh: Mesh) -> bool:
 
 
 def _turned_over(mesh: Mesh, gap: float) -> Mesh:
+    """Corners go along the mean of their triangles' normals, by the angles there (Thürmer & Wüthrich 1998), which
+    leaves what is flat flat however it is cut into triangles."""
     normals = np.zeros((len(mesh.vertices), 3))
-    for corner in range(3):
-        np.add.at(normals, mesh.triangles[:, corner], _normals(mesh))
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    behind = mesh.vertices - gap * np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
-    return Mesh(behind.astype(np.float32), mesh.triangles[:, [0, 2, 1]], mesh.albedo, mesh.emission, mesh.material)
+    flat = _units(_normals(mesh))
+    corners = mesh.vertices[mesh.triangles].astype(np.float64)
+    for k in range(3):
+        one, other = (_units(corners[:, k - step] - corners[:, k]) for step in (1, 2))
+        angles = np.arccos(np.clip(np.einsum("nc,nc->n", one, other), -1, 1))
+        np.add.at(normals, mesh.triangles[:, k], angles[:, None] * flat)
+    behind = (mesh.vertices - gap * _units(normals)).astype(np.float32)
+    return Mesh(behind, mesh.triangles[:, [0, 2, 1]], mesh.albedo, mesh.emission, mesh.material)
+
+
+def _units(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Of length 1, but for those of length 0."""
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    units: NDArray[np.float64] = np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)
+    return units

@@ -34,16 +34,19 @@ LAMP_RADIANCE = 10.0
 _DISTANCE = 2.5  # of the bounding sphere's radius
 _SIDE = 0.6  # of the distance
 _IRRADIANCE = LAMP_RADIANCE * _SIDE**2
+_INNER_IRRADIANCE = _IRRADIANCE / 3
 
 # Directions to the lamp: in a frame whose y is up and whose z is the model's front; and by the camera's right,
 # its up and the way back to it.
 _FROM_MODEL = (-0.6, 1.0, 0.6)
 _FROM_CAMERA = ((-0.5, 0.7, 1.0), (0.5, 0.7, 1.0))
 
-# Within rooms the lamp is moved off the camera, by so much of the middle depth that it sees; it is small there.
-_ASIDE = 0.35
-_INNER_SIDE = 0.15
-_INNER_RADIANCE = _IRRADIANCE / _INNER_SIDE**2
+# Within rooms the lamp is moved off the camera, by so much of the middle depth that it sees. Its size is a share
+# of that, so that it ends before what is looked at farther out: sqrt(1/2) of the size is less than that leaves.
+# Its irradiance at that depth is a third of the other's, since walls send most of it back.
+_ASIDE = (0.35, 0.1)
+_INNER_SIZE, _PROBE_SIZE = 0.2, 0.1
+_CLEAR = 1.3
 
 _PIXELS, _SAMPLES, _BOUNCES = 48, 16, 4
 _GREY = 0.8
@@ -190,15 +193,26 @@ def _outer(box: Box, direction: _Direction, distance: float) -> Lamp:
 
 
 def _inner(shapes: _Shapes, view: _View, depths: NDArray[np.float64]) -> Lamp:
-    """A lamp in the room that the camera is in: beside or above it where that is within, else behind its lens."""
+    """A lamp in the room that the camera is in: beside or above it where that is within, else behind its lens.
+
+    Small lamps farther out are looked at, so that the lamp itself keeps clear of the walls.
+    """
     depth, nearest = float(np.median(depths)), float(depths.min())
-    side, towards = _INNER_SIDE * depth, view.position + depth * view.forward
-    middles = [view.position + _ASIDE * depth * view.direction(x, y, 0) for x, y in ((-1, 1), (1, 1), (0, 1))]
-    lamps = [Lamp(middle, towards, side, _INNER_RADIANCE) for middle in middles]
-    probe = _Probe(shapes, view.camera, False)
-    probe.look((), [lamp.mesh(view.scene_up, _color(k, lamp.radiance)) for k, lamp in enumerate(lamps)])
-    found = _best(lamps, [probe.share(k, _GREY / np.pi * _IRRADIANCE) for k in range(len(lamps))])
-    return found or Lamp(view.position - 1e-3 * nearest * view.forward, towards, side, _INNER_RADIANCE)
+    towards = view.position + depth * view.forward
+
+    def lamp(offset: _Direction, size: float) -> Lamp:
+        return Lamp(view.position + offset, towards, size * depth, _INNER_IRRADIANCE / size**2)
+
+    for aside in _ASIDE:
+        offsets = [aside * depth * view.direction(x, y, 0) for x, y in ((-1, 1), (1, 1), (0, 1))]
+        probe = _Probe(shapes, view.camera, False)
+        far = [lamp(_CLEAR * offset, aside * _PROBE_SIZE) for offset in offsets]
+        probe.look((), [each.mesh(view.scene_up, _color(k, each.radiance)) for k, each in enumerate(far)])
+        shares = [probe.share(k, _GREY / np.pi * _INNER_IRRADIANCE) for k in range(len(far))]
+        found = _best([lamp(offset, aside * _INNER_SIZE) for offset in offsets], shares)
+        if found:
+            return found
+    return lamp(-1e-3 * nearest * view.forward, _ASIDE[-1] * _PROBE_SIZE)
 
 
 # ---- the probe ----

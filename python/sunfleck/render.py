@@ -20,10 +20,10 @@ from sunfleck._arguments import flag, integer, number, text
 from sunfleck._core import Progress
 from sunfleck._files import FilePath, ending, given_path
 from sunfleck.error import CheckpointError
-from sunfleck.exposure import auto_exposure, clipped, exposure_of, stops
+from sunfleck.exposure import blank, exposure_of, stops, why_black
 from sunfleck.figure import Figure
 from sunfleck.heatmap import heatmap
-from sunfleck.image import encode_color, png_bytes, write_channels, write_false_color
+from sunfleck.image import png_bytes, write_channels, write_false_color
 from sunfleck.scene import Scene
 from sunfleck.tolerance import Tolerance
 
@@ -272,21 +272,9 @@ class Image:
         write_channels(path, self.channels, self.metadata, number)
         if chosen == "auto":
             _log.info("%s: exposure %.2f stops, chosen by what is lit", os.fspath(path), number)
-        self._tell_if_blank(os.fspath(path), number)
-
-    def _tell_if_blank(self, path: str, exposure: float) -> None:
-        """Says why a PNG is wholly white or black though the picture is not."""
-        if not self.color.any():
-            return  # which `render` has said
-        encoded, better = encode_color(self.channels, exposure), auto_exposure(self.color)
-        seen: NDArray[np.bool_] = np.any(self.color, axis=-1)
-        shown = "white" if clipped(encoded, seen) else "black" if not encoded.any() else ""
-        if shown:
-            _log.warning(
-                "%s: wholly %s with an exposure of %.4g stops, since most of what is lit has a radiance of about %.3g; "
-                "exposure='auto' would be %.4g",
-                *(path, shown, exposure, 0.8 * 2.0**-better, better),
-            )
+        reason = blank(self.color, number)
+        if reason:
+            _log.warning("%s: %s", os.fspath(path), reason)
 
     def save_map(self, channel: str, path: FilePath) -> None:
         """Writes one channel as a PNG in false colours: dark blue is low, yellow high, logarithmic.
@@ -652,21 +640,14 @@ def _finished(film: _core.Film, scene: Scene) -> Image:
     if film.failure:
         raise CheckpointError(film.failure, image)
     if not scene._quiet and not image.color.any() and image.samples.any():
-        _log.warning("the picture is wholly black: %s", _why_black(image, scene))
+        reason = why_black(
+            any_dropped=image.summary().nonfinite_samples > 0,
+            any_light=scene.info.light_count > 0 or any(scene.background),
+            any_surface=bool(image.alpha.any()),
+            max_bounces=scene.max_bounces,
+        )
+        _log.warning("the picture is wholly black: %s", reason)
     return image
-
-
-def _why_black(image: Image, scene: Scene) -> str:
-    """The first reason that there is."""
-    if image.summary().nonfinite_samples:
-        return "samples were not finite, and were dropped"
-    if scene.info.light_count == 0 and not any(scene.background):
-        return "nothing in the scene shines: no emission, no suns, no environment, no background"
-    if not image.alpha.any():
-        return "the camera sees none of the shapes"
-    if scene.max_bounces == 0:
-        return "max_bounces is 0, and the camera sees no light itself"
-    return "the light does not reach what the camera sees: it faces away, or something stands between"
 
 
 def merge(images: Sequence[Image | FilePath]) -> Image:

@@ -8,9 +8,11 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import sunfleck as sf
+from sunfleck.image import read_radiance
 from sunfleck.source import Source
 
 
@@ -132,3 +134,20 @@ def test_limits_of_the_wrong_kind_are_refused(model: Path) -> None:
         Source(model, limits=5)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="allow_outside is 1"):
         Source(model, allow_outside=1)  # type: ignore[arg-type]
+
+
+def test_radiance_is_read_within_limits(tmp_path: Path) -> None:
+    path = tmp_path / "sky.pfm"
+    path.write_bytes(b"PF\n4 2\n-1.0\n" + np.ones((2, 4, 3), "<f4").tobytes())
+    assert read_radiance(path).shape == (2, 4, 3)
+    with pytest.raises(ValueError, match=r"sky\.pfm': it asks for 8 pixels in a picture of 4 x 2"):
+        read_radiance(path, sf.Limits(pixels=7))
+    with pytest.raises(ValueError, match="asks for 192 bytes"):
+        read_radiance(path, sf.Limits(bytes=191))
+    os.mkfifo(tmp_path / "pipe.exr")
+    with pytest.raises(OSError, match="is not a file"):
+        read_radiance(tmp_path / "pipe.exr")
+    huge = tmp_path / "huge.pfm"
+    huge.write_bytes(b"PF\n20000 20000\n-1.0\n")
+    with pytest.raises(ValueError, match="400,000,000 pixels"):
+        read_radiance(huge)
