@@ -15,7 +15,7 @@ strength, and finds only cameras that are children of the root.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -79,7 +79,7 @@ class Contents:
     ``photometric``: whether its light is in lux, which no picture shows as it is.
     """
 
-    meshes: list[Mesh | Instances]
+    meshes: Sequence[Mesh | Instances]
     views: list[View] = field(default_factory=list)
     suns: list[Sun] = field(default_factory=list)
     photometric: bool = False

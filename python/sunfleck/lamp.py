@@ -3,8 +3,9 @@
 
 """lamp: the light that a file gets whose own does not reach what the camera sees.
 
-A probe, a small render of the file's shapes, all of them diffuse and grey, tells how much of what the camera
-sees is lit: by the file's own light in red, by candidates for the lamp in green and blue.
+Small renders tell how much of what the camera sees is lit: first by the file's own light, then with a lamp at the
+left of the model. Where neither does, a probe, the same shapes all of them diffuse and grey, compares places for the
+lamp: one in red, one in green, one in blue.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from sunfleck.render import render
 from sunfleck.scene import Camera, Scene
 from sunfleck.sky import Sun
 
-__all__ = ["LAMP_RADIANCE", "Lamp", "choose_lamp", "emits"]
+__all__ = ["LAMP_RADIANCE", "Lamp", "emits", "lit_scene"]
 
 _Shapes = Sequence[Mesh | Instances]
 _Direction = NDArray[np.float64]
@@ -48,8 +49,9 @@ _ASIDE = (0.35, 0.1)
 _INNER_SIZE, _PROBE_SIZE = 0.2, 0.1
 _CLEAR = 1.3
 
-_PIXELS, _SAMPLES, _BOUNCES = 48, 16, 4
+_PIXELS, _SAMPLES = 48, 16
 _GREY = 0.8
+_BLACK = 0.02  # albedos up to it are not judged by what they reflect
 
 # A lamp is added where the file's own light reaches less than this share of what is seen. A pixel counts as lit
 # from 15 of 255 in sRGB on.
@@ -113,10 +115,10 @@ class _View:
         return not any(side.all() for side in (z < 0, x > edge, x < -edge, y > edge, y < -edge))
 
 
-def choose_lamp(
+def lit_scene(
     shapes: _Shapes, camera: Camera, box: Box, *, z_up: bool, aspect: float = 1.0
-) -> tuple[Lamp | None, float]:
-    """A lamp that lights what the camera sees, and the share of it that the file's own light reaches.
+) -> tuple[Scene, Lamp | None, float]:
+    """A scene of the shapes, which has one lamp more where their own light does not reach what the camera sees.
 
     Parameters
     ----------
@@ -132,33 +134,69 @@ def choose_lamp(
 
     Returns
     -------
+    Scene
+        Of which nothing is said yet.
     Lamp or None
         None: the file's own light suffices.
     float
-        In [0, 1].
+        The share of what the camera sees that this light reaches, in [0, 1].
 
     Notes
     -----
-    It takes a scene of the shapes, and one more where no light from outside reaches what is seen: as long as
-    building the scene itself, and some ten milliseconds.
+    Where the first place for the lamp is good, it takes some ten milliseconds more than the scene itself; else the
+    time of building up to four more scenes of the same shapes.
     """
-    lit = any(map(emits, shapes))
-    first = 1 if lit else 0  # channel of the candidates
+    share = 0.0
+    if any(map(emits, shapes)):
+        scene = Scene._silent(shapes, camera)
+        share = _own_share(scene)
+        if share >= _OWN_SHARE:
+            return scene, None, share
     up = np.array((0.0, 0.0, 1.0) if z_up else (0.0, 1.0, 0.0))
     view = _View(camera, aspect, up)
-    outer = [_from_model(box, z_up), *(_from_camera(box, view, towards) for towards in _FROM_CAMERA)][: 3 - first]
-    probe = _Probe(shapes, camera, lit)
-    depths = probe.look(
-        [Sun(vector("", lamp.middle - lamp.towards), 0, _color(first + k)) for k, lamp in enumerate(outer)]
-    )
-    share = probe.share_of_own() if lit else 0.0
-    if share >= _OWN_SHARE:
-        return None, share
+    first = _from_model(box, z_up)
+    if not view.shows(first):
+        scene = Scene._silent([*shapes, first.mesh(up)], camera)
+        if _lit_share(scene) >= _GOOD:
+            return scene, first, share
+    lamp = _search(shapes, view, box, first)
+    return Scene._silent([*shapes, lamp.mesh(up)], camera), lamp, share
+
+
+def _look(scene: Scene) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Radiance and albedo of the pixels that show a surface, as means over colours."""
+    image = render(scene, _PIXELS, _PIXELS, spp=_SAMPLES, aovs=("albedo",))
+    seen = image.alpha > 0.5
+    radiance, albedo = (a.astype(np.float64).mean(axis=-1)[seen] for a in (image.color, image.aovs["albedo"]))
+    return radiance, albedo
+
+
+def _own_share(scene: Scene) -> float:
+    """Of the pixels that show a surface: those that emit or that light reaches, as if they were grey."""
+    radiance, albedo = _look(scene)
+    grey = radiance * np.where(albedo > _BLACK, _GREY / np.maximum(albedo, _BLACK), 1)
+    return float(np.mean(grey > _DARK)) if grey.size else 1.0
+
+
+def _lit_share(scene: Scene) -> float:
+    """Of the pixels that show a surface that is not black: those that the lamp reaches."""
+    radiance, albedo = _look(scene)
+    lit = radiance[albedo > _BLACK] > _LIT * _IRRADIANCE / np.pi * albedo[albedo > _BLACK]
+    return float(np.mean(lit)) if lit.size else 1.0
+
+
+# ---- where a lamp may be ----
+
+
+def _search(shapes: _Shapes, view: _View, box: Box, first: Lamp) -> Lamp:
+    """The best of places about the model and the camera, or else one in the room that the camera is in."""
+    outer = [first, *(_from_camera(box, view, towards) for towards in _FROM_CAMERA)]
+    probe = _Probe(shapes, view.camera)
+    depths = probe.look([Sun(vector("", lamp.middle - lamp.towards), 0, _color(k)) for k, lamp in enumerate(outer)])
     if not len(depths):
-        return outer[0], share
-    seen = [view.shows(lamp) for lamp in outer]
-    shares = [0.0 if seen[k] else probe.share(first + k, _GREY / np.pi) for k in range(len(outer))]
-    return _best(outer, shares) or _inner(shapes, view, depths), share
+        return first
+    shares = [0.0 if view.shows(lamp) else probe.share(k, _GREY / np.pi) for k, lamp in enumerate(outer)]
+    return _best(outer, shares) or _inner(shapes, view, depths)
 
 
 def _best(lamps: Sequence[Lamp], shares: Sequence[float]) -> Lamp | None:
@@ -166,9 +204,6 @@ def _best(lamps: Sequence[Lamp], shares: Sequence[float]) -> Lamp | None:
     good = [lamp for lamp, share in zip(lamps, shares, strict=True) if share >= _GOOD]
     most = int(np.argmax(shares))
     return good[0] if good else lamps[most] if shares[most] >= _POSSIBLE else None
-
-
-# ---- where a lamp may be ----
 
 
 def _from_model(box: Box, z_up: bool) -> Lamp:
@@ -205,7 +240,7 @@ def _inner(shapes: _Shapes, view: _View, depths: NDArray[np.float64]) -> Lamp:
 
     for aside in _ASIDE:
         offsets = [aside * depth * view.direction(x, y, 0) for x, y in ((-1, 1), (1, 1), (0, 1))]
-        probe = _Probe(shapes, view.camera, False)
+        probe = _Probe(shapes, view.camera)
         far = [lamp(_CLEAR * offset, aside * _PROBE_SIZE) for offset in offsets]
         probe.look((), [each.mesh(view.scene_up, _color(k, each.radiance)) for k, each in enumerate(far)])
         shares = [probe.share(k, _GREY / np.pi * _INNER_IRRADIANCE) for k in range(len(far))]
@@ -229,11 +264,11 @@ def emits(shape: Mesh | Instances) -> bool:
 
 
 class _Probe:
-    """Shapes without colour: grey, but for emitters, which are black and shine in red, if at all. Glass, which
-    lets light through, is left out where there is anything else."""
+    """Shapes without colour: grey and diffuse, but for emitters, which are black and dark. Glass, which lets light
+    through, is left out where there is anything else."""
 
-    def __init__(self, shapes: _Shapes, camera: Camera, lit: bool) -> None:
-        self._camera, self._lit = camera, lit
+    def __init__(self, shapes: _Shapes, camera: Camera) -> None:
+        self._camera = camera
         self._greys: dict[int, Mesh] = {}
         self._shapes = self._all_grey(shapes, False) or self._all_grey(shapes, True)
 
@@ -241,9 +276,8 @@ class _Probe:
         grey: list[Mesh | Instances] = []
         for shape in shapes:
             meshes = shape.meshes if isinstance(shape, Instances) else (shape,)
-            shown = [
-                self._grey(m) for m in meshes if with_glass or any(m.emission) or not isinstance(m.material, Dielectric)
-            ]
+            solid = [mesh for mesh in meshes if any(mesh.emission) or not isinstance(mesh.material, Dielectric)]
+            shown = [self._grey(mesh) for mesh in (meshes if with_glass else solid)]
             if shown:
                 grey.append(Instances(shown, shape.transforms) if isinstance(shape, Instances) else shown[0])
         return grey
@@ -251,33 +285,20 @@ class _Probe:
     def _grey(self, mesh: Mesh) -> Mesh:
         """The same one for the same mesh, so that instances share it."""
         if id(mesh) not in self._greys:
-            emits = any(mesh.emission)
-            glow = _color(0, float(np.mean(mesh.emission)) if self._lit else 0.0)
-            self._greys[id(mesh)] = Mesh(mesh.vertices, mesh.triangles, (0.0 if emits else _GREY,) * 3, glow)
+            albedo = 0.0 if any(mesh.emission) else _GREY
+            self._greys[id(mesh)] = Mesh(mesh.vertices, mesh.triangles, (albedo,) * 3)
         return self._greys[id(mesh)]
 
     def look(self, suns: Sequence[Sun], emitters: Sequence[Mesh] = ()) -> NDArray[np.float64]:
-        """Renders; the depths along the camera's axis of what is seen and does not emit."""
-        bounces = _BOUNCES if self._lit else 1
-        scene = _QuietScene([*self._shapes, *emitters], self._camera, max_bounces=bounces, suns=suns)
+        """Renders direct light; the depths along the camera's axis of what is seen and does not emit."""
+        scene = Scene._silent([*self._shapes, *emitters], self._camera, max_bounces=1, suns=suns)
         image = render(scene, _PIXELS, _PIXELS, spp=_SAMPLES, aovs=("albedo", "depth"))
         cover = image.aovs["albedo"][..., 0] / _GREY
         seen = (cover > 0.5) & (image.alpha - cover < 0.02)  # no emitter in the pixel
         self._color = (image.color / np.maximum(cover, 0.5)[..., None])[seen]
-        self._own = image.color[image.alpha > 0.5][:, 0]
         depths: NDArray[np.float64] = image.aovs["depth"][seen].astype(np.float64)
         return depths
 
     def share(self, channel: int, full: float) -> float:
         """Of the pixels seen that do not emit: those that have some of the radiance that a candidate gives in full."""
         return float(np.mean(self._color[:, channel] > _LIT * full))
-
-    def share_of_own(self) -> float:
-        """Of the pixels seen, emitters too: those that the file's own light reaches."""
-        return float(np.mean(self._own > _DARK)) if self._own.size else 1.0
-
-
-class _QuietScene(Scene):
-    """A scene of which nothing is said, since the picture of it is not shown."""
-
-    _quiet = True

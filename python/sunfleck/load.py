@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import io
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,7 @@ from sunfleck._files import FilePath
 from sunfleck.bounds import Box, box_of
 from sunfleck.gltf import Contents, View, read_gltf
 from sunfleck.instances import Instances
-from sunfleck.lamp import choose_lamp, emits
+from sunfleck.lamp import emits, lit_scene
 from sunfleck.mesh import Mesh
 from sunfleck.scene import Camera, Scene
 from sunfleck.scenes import SCENES
@@ -167,19 +167,18 @@ def _camera(file: Path, views: list[View], wanted: str | int | None, box: Box) -
     return camera, views[number].aspect if views else 1.0
 
 
-def _add_lamp(file: Path, contents: Contents, camera: Camera, aspect: float, box: Box) -> None:
-    """What the file's light leaves dark is lit by one more mesh."""
-    z_up, lit = z_is_up(file), any(map(emits, contents.meshes))
-    lamp, share = choose_lamp(contents.meshes, camera, box, z_up=z_up, aspect=aspect)
-    if lamp is None:
-        return
-    up = np.array((0.0, 0.0, 1.0) if z_up else (0.0, 1.0, 0.0))
-    contents.meshes.append(lamp.mesh(up))
-    why = f"its light reaches {100 * share:.1f} % of what the camera sees" if lit else "no light in it"
-    _log.info(
-        "%s: %s; a square of side %.4g and radiance %.4g shines from (%.4g, %.4g, %.4g)",
-        *(file, why, lamp.side, lamp.radiance, *lamp.middle),
-    )
+def _lit_scene(file: Path, shapes: Sequence[Mesh | Instances], camera: Camera, aspect: float, box: Box) -> Scene:
+    """What the shapes' own light leaves dark is lit by one mesh more."""
+    scene, lamp, share = lit_scene(shapes, camera, box, z_up=z_is_up(file), aspect=aspect)
+    if lamp is not None:
+        lit = any(map(emits, shapes))
+        why = f"its light reaches {100 * share:.1f} % of what the camera sees" if lit else "no light in it"
+        _log.info(
+            "%s: %s; a square of side %.4g and radiance %.4g shines from (%.4g, %.4g, %.4g)",
+            *(file, why, lamp.side, lamp.radiance, *lamp.middle),
+        )
+    scene._speak()
+    return scene
 
 
 def z_is_up(path: FilePath) -> bool:
@@ -250,7 +249,7 @@ def load(
     A file without a perspective camera gets one of 40 degrees that sees the whole model from the
     front, to the right and above. glTF's directional lights become suns of angle 0; point and spot
     lights are left out, and their number is said. Where a file has no suns, and what emits in it reaches less
-    than a tenth of what the camera sees (as a render of 48 x 48 pixels tells, with grey surfaces), it gets a lamp,
+    than a tenth of what the camera sees (as a render of 48 x 48 pixels tells), it gets a lamp,
     a square: of radiance 10, as wide as 1.5 radii of the model, 2.5 radii from its centre, to the left, above and
     in front of the model, or else of the camera; in rooms a small one beside the camera. All of this is said
     through ``logging`` under "sunfleck", at level INFO, as is all that was left out. y is up in OBJ and glTF, z in
@@ -284,7 +283,7 @@ def load(
         raise ValueError(f"{file}: all of it lies in one point")
     eye, aspect = _camera(file, contents.views, camera, box)
     if environment is None and not contents.suns:
-        _add_lamp(file, contents, eye, aspect, box)
+        return _lit_scene(file, contents.meshes, eye, aspect, box)
     exposure = "auto" if contents.photometric else 0.0
     return Scene(contents.meshes, eye, suns=contents.suns, environment=environment, exposure=exposure)
 

@@ -297,6 +297,19 @@ class Scene:
             self._core.set_fog(fog.scattering, fog.absorption, fog.g)
         self._core.commit()
         self._info = SceneInfo(**self._core.info())
+        if not self._quiet:
+            self._report()
+
+    @classmethod
+    def _silent(cls, *arguments: Any, **options: Any) -> Scene:
+        """A scene of which nothing is said, nor of its pictures, before `_speak`."""
+        scene = cls.__new__(cls)
+        scene._quiet = True
+        scene.__init__(*arguments, **options)  # type: ignore[misc]
+        return scene
+
+    def _speak(self) -> None:
+        self._quiet = False
         self._report()
 
     def _add_shapes(self) -> None:
@@ -320,8 +333,6 @@ class Scene:
 
     def _report(self) -> None:
         info = self._info
-        if self._quiet:
-            return
         if info.degenerate_count:
             _log.info("%d of %d triangles have no area", info.degenerate_count, info.triangle_count)
         if info.copied_bytes:

@@ -162,7 +162,7 @@ def test_closed_emitters_shine_inwards_only_where_something_is(tmp_path: Path) -
     scene = sf.load(around)
     assert scene.info.light_count == 12
     assert (color_of(sf.Scene(scene.shapes, sf.Camera((0, 5, 0), (0, 9, 1)))) == 5).all()
-    eye = [{"mesh": 0}, {"camera": 0}]
+    eye: list[dict[str, Any]] = [{"mesh": 0}, {"camera": 0}]
     seen = sf.load(write_gltf(tmp_path, [(*dome, 0)], eye, [glow(5, doubleSided=True)], cameras=[CAMERA]))
     assert (color_of(seen) == 5).all()
 
@@ -175,7 +175,11 @@ def test_nodes_of_scale_zero_hide_what_is_below_them(
     tmp_path: Path, scale: list[float], caplog: pytest.LogCaptureFixture
 ) -> None:
     half = 0.5**0.5
-    nodes = [{"mesh": 0}, {"children": [2], "scale": scale}, {"mesh": 1, "rotation": [0, half, 0, half]}]
+    nodes: list[dict[str, Any]] = [
+        {"mesh": 0},
+        {"children": [2], "scale": scale},
+        {"mesh": 1, "rotation": [0, half, 0, half]},
+    ]
     path = write_gltf(tmp_path, [(*SQUARE, 0), (*BALL, 1)], nodes, [WHITE, glow(5)], scenes=[{"nodes": [0, 1]}])
     with caplog.at_level("INFO", "sunfleck"):
         scene = sf.load(path)
