@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from sunfleck._arguments import Vector, number, vector
 from sunfleck.gltf_data import Document
 from sunfleck.gltf_material import READ_EXTENSIONS
-from sunfleck.gltf_mesh import Placed, singular_values
+from sunfleck.gltf_mesh import Placed, shown
 from sunfleck.instances import Instances
 from sunfleck.mesh import Mesh
 from sunfleck.sky import Sun
@@ -52,11 +52,6 @@ _HARMLESS = {
     "KHR_xmp_json_ld",
     "MSFT_texture_dds",
 }
-
-# A node whose transform squashes everything by more than this, along two axes, shows nothing. It is what
-# rounding leaves of a scale of 0 under rotations; beyond the largest coordinate it is scale that is wrong.
-_FLAT = 1e-14
-_LARGEST = 1e12
 
 
 @dataclass(frozen=True)
@@ -139,26 +134,18 @@ def _transforms(
 
 
 def _transform(node: dict[str, Any]) -> NDArray[np.float64]:
+    """Of one node, without the arrays of many: files have 10^5 of them."""
     if "matrix" in node:
         matrix: NDArray[np.float64] = np.array(node["matrix"], dtype=np.float64).reshape(4, 4).T
         return matrix
-    transforms = _transforms(
-        np.array([vector("translation", node.get("translation", (0, 0, 0)))]),
-        np.array(node.get("rotation", (0, 0, 0, 1)), dtype=np.float64).reshape(1, 4),
-        np.array([vector("scale", node.get("scale", (1, 1, 1)))]),
-    )
-    only: NDArray[np.float64] = transforms[0]
-    return only
-
-
-def _seen(transforms: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which of the transforms leave two dimensions at least; those that are not finite are the mesh's to refuse."""
-    linear = transforms[:, :3, :3]
-    finite: NDArray[np.bool_] = np.all(np.isfinite(linear), axis=(1, 2))
-    singular = singular_values(np.where(finite.reshape(-1, 1, 1), linear, np.eye(3)))
-    wrong: NDArray[np.bool_] = ~finite | (singular[:, 0] > _LARGEST)
-    seen: NDArray[np.bool_] = wrong | (singular[:, 1] > _FLAT * singular[:, 0])
-    return seen
+    transform = np.eye(4)
+    if "rotation" in node:
+        transform[:3, :3] = _rotations(np.array(node["rotation"], dtype=np.float64).reshape(1, 4))[0]
+    if "scale" in node:
+        transform[:3, :3] *= vector("scale", node["scale"])
+    if "translation" in node:
+        transform[:3, 3] = vector("translation", node["translation"])
+    return transform
 
 
 class _Reader:
@@ -199,13 +186,12 @@ class _Reader:
     def _mesh(self, node: _Node) -> None:
         instancing = node.extension("EXT_mesh_gpu_instancing")
         places = node.transform[np.newaxis] if instancing is None else node.transform @ self._copies(instancing)
-        seen = _seen(places)
-        if node.hidden or not seen.any():
+        if node.hidden:
             self._hidden += 1
             return
         if "skin" in node.tree:
             self._document.note("skins are not applied: the mesh is shown as it was bound")
-        self._placed.add(node.tree["mesh"], places[seen])
+        self._placed.add(node.tree["mesh"], places)
 
     def _copies(self, instancing: dict[str, Any]) -> NDArray[np.float64]:
         """Shape (n, 4, 4): where a node's mesh is placed, relative to the node."""
@@ -233,7 +219,7 @@ class _Reader:
         if "perspective" not in camera:
             self._document.note("orthographic cameras are left out")
             return
-        if not _seen(transform[np.newaxis]).all():
+        if not shown(transform[np.newaxis]).all():
             self._document.note("cameras of nodes of scale 0 are left out")
             return
         self._views.append(
@@ -270,8 +256,9 @@ class _Reader:
         tree, note = self._document.tree, self._document.note
         if self._left_out:
             note(f"{self._left_out} point and spot lights are left out")
-        if self._hidden:
-            note(f"{self._hidden} nodes are hidden: their scale is 0, or they are marked invisible")
+        hidden = self._hidden + self._placed.hidden
+        if hidden:
+            note(f"{hidden} nodes are hidden: their scale is 0, or they are marked invisible")
         if tree.get("animations"):
             note(f"{len(tree['animations'])} animations are left out: everything is where the nodes say")
         others = set(tree.get("extensionsUsed", [])) - _READ

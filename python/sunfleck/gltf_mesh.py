@@ -20,7 +20,7 @@ from sunfleck.gltf_material import read_material
 from sunfleck.instances import Instances
 from sunfleck.mesh import Mesh
 
-__all__ = ["Placed", "singular_values"]
+__all__ = ["Placed", "shown"]
 
 _LINES_AND_POINTS, _TRIANGLES, _STRIP, _FAN = (0, 1, 2, 3), 4, 5, 6
 
@@ -39,6 +39,11 @@ _LOOKED_AT = 4096  # triangles, to tell that
 
 _MESH_BYTES = 2000  # what Python and Embree take for a mesh beside its arrays, rounded up
 _COMPARED = 10**8  # pairs of boxes that are compared at the most
+
+# A node whose transform squashes everything by more than this, along two axes, shows nothing. It is what
+# rounding leaves of a scale of 0 under rotations; beyond the largest coordinate it is scale that is wrong.
+_FLAT = 1e-14
+_LARGEST = 1e12
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,13 +65,14 @@ class Placed:
 
     def __init__(self, document: Document) -> None:
         self._document = document
+        self.hidden = 0  # placements that show nothing, which `shapes` counts
         self._places: dict[int, list[NDArray[np.float64]]] = {}
         self._positions: dict[int, NDArray[np.float32]] = {}
         self._shapes: list[Mesh | Instances] = []
         self._double_sided: list[Mesh] = []
 
     def add(self, index: int, transforms: NDArray[np.float64]) -> None:
-        """Places a mesh by each of the transforms, shape (n, 4, 4), of rank 2 at least."""
+        """Places a mesh by each of the transforms, shape (n, 4, 4)."""
         self._document.item("meshes", index)
         self._places.setdefault(index, []).append(transforms)
 
@@ -74,9 +80,12 @@ class Placed:
         """All of it. Emitters of two sides shine into the closed space within them only where something else
         is there, such as one of the eyes, shape (n, 3)."""
         for index, places in self._places.items():
-            parts = self._parts(index)
+            transforms = np.concatenate(places)
+            seen = shown(transforms)
+            self.hidden += int(np.count_nonzero(~seen))
+            parts = self._parts(index) if seen.any() else []
             if parts:
-                self._place(parts, np.concatenate(places))
+                self._place(parts, transforms[seen])
         self._shapes += self._backs(eyes)
         return self._shapes
 
@@ -265,7 +274,17 @@ def _smooth(positions: NDArray[np.float32], triangles: NDArray[np.uint32], norma
     return bool((np.abs(cosines) < limit)[lengths > 0].any())
 
 
-def singular_values(linear: NDArray[np.float64]) -> NDArray[np.float64]:
+def shown(transforms: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which of the transforms leave two dimensions at least; those that are not finite are the mesh's to refuse."""
+    linear = transforms[:, :3, :3]
+    finite: NDArray[np.bool_] = np.all(np.isfinite(linear), axis=(1, 2))
+    singular = _singular_values(np.where(finite.reshape(-1, 1, 1), linear, np.eye(3)))
+    wrong: NDArray[np.bool_] = ~finite | (singular[:, 0] > _LARGEST)
+    seen: NDArray[np.bool_] = wrong | (singular[:, 1] > _FLAT * singular[:, 0])
+    return seen
+
+
+def _singular_values(linear: NDArray[np.float64]) -> NDArray[np.float64]:
     """Of matrices, shape (n, 3, 3), finite: shape (n, 3), falling."""
     values: NDArray[np.float64] = np.linalg.svd(linear, full_matrices=False, compute_uv=False).astype(np.float64)
     return values
@@ -273,7 +292,7 @@ def singular_values(linear: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _regular(transforms: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Which transforms instances allow."""
-    singular = singular_values(transforms[:, :3, :3])
+    singular = _singular_values(transforms[:, :3, :3])
     least, determinants = singular[:, 2], singular.prod(axis=1)
     conditioned = singular[:, 0] <= _CONDITION_LIMIT * least
     regular: NDArray[np.bool_] = conditioned & (determinants > _DETERMINANTS[0]) & (determinants < _DETERMINANTS[1])
