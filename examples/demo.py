@@ -28,14 +28,14 @@ def engine_on_a_floor() -> sf.Scene:
     """The model under the light that `load` gives it, standing on a floor, in a little daylight."""
     scene = sf.load(ENGINE)
     lower, upper = np.array(scene.info.bounds_lower), np.array(scene.info.bounds_upper)
-    solid = [mesh.vertices for mesh in scene.meshes if not any(mesh.emission)]
-    height = min(float(vertices[:, 1].min()) for vertices in solid)
+    solid = sf.Scene([shape for shape in scene.shapes if shape is not scene.meshes[-1]], scene.camera)  # but the light
+    height = solid.info.bounds_lower[1]
     reach = 4 * float(np.linalg.norm(upper - lower))
     x, z = (lower + upper)[[0, 2]] / 2
     corners = [(x - reach, height, z - reach), (x - reach, height, z + reach)]
     corners += [(x + reach, height, z + reach), (x + reach, height, z - reach)]
     floor = sf.Mesh(corners, [[0, 1, 2], [0, 2, 3]], albedo=(0.6, 0.6, 0.6))
-    return sf.Scene([*scene.meshes, floor], scene.camera, background=(0.1, 0.12, 0.15), max_bounces=3)
+    return sf.Scene([*scene.shapes, floor], scene.camera, background=(0.1, 0.12, 0.15), max_bounces=3)
 
 
 def render(name: str, scene: sf.Scene, tolerance: float) -> None:

@@ -47,6 +47,8 @@ def read_material(tree: dict[str, Any], note: _Note) -> dict[str, Any]:
     extensions = tree.get("extensions", {})
     for name in sorted(set(extensions) - READ_EXTENSIONS):
         note(f"{name} of materials is not read")
+    if "normalTexture" in tree:
+        note("normal maps are not read")
     mode = tree.get("alphaMode", "OPAQUE")
     if mode != "OPAQUE":
         note(f"alpha is not read: materials of alphaMode {mode} are opaque")

@@ -24,9 +24,9 @@ __all__ = ["Placed", "shown"]
 
 _LINES_AND_POINTS, _TRIANGLES, _STRIP, _FAN = (0, 1, 2, 3), 4, 5, 6
 
-# So many triangles are copied, for all placements of a mesh but the first, rather than placed by an instance:
-# instances are a stage more for every ray that meets them.
-_COPIED = 1000
+# So many triangles, about a megabyte, are copied for all placements of a mesh but the first rather than placed by
+# instances, which are a stage more for every ray that meets them.
+_COPIED = 10_000
 
 # Transforms beyond these are flattened: the largest quotient of singular values, and the determinant's size.
 # Instances allow three times the quotient (csrc/instances.c: Frobenius's norms), and ten times the sizes.

@@ -244,7 +244,7 @@ def load(
     left out. Double-sided materials emit on both sides.
 
     A mesh that several nodes of a glTF share, or that EXT_mesh_gpu_instancing repeats, becomes `Instances` where
-    more than 1000 triangles would be copied. Nodes of scale 0 are hidden.
+    more than 10,000 triangles would be copied. Nodes of scale 0 are hidden.
 
     A file without a perspective camera gets one of 40 degrees that sees the whole model from the
     front, to the right and above. glTF's directional lights become suns of angle 0; point and spot

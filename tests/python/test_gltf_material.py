@@ -119,6 +119,7 @@ def test_emission_goes_with_any_material(tmp_path: Path) -> None:
         ({"extensions": {GLASS: {"transmissionTexture": {"index": 0}}}}, "transmissionFactor stands alone"),
         ({"extensions": {"KHR_materials_clearcoat": {}}}, "KHR_materials_clearcoat of materials is not read"),
         ({"extensions": {"KHR_materials_volume": {}}}, "KHR_materials_volume of materials is not read"),
+        ({"normalTexture": {"index": 0}}, "normal maps are not read"),
         ({"alphaMode": "BLEND"}, "materials of alphaMode BLEND are opaque"),
         ({"alphaMode": "MASK"}, "materials of alphaMode MASK are opaque"),
     ],

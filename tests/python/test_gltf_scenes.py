@@ -42,7 +42,8 @@ def icosphere(levels: int) -> tuple[np.ndarray, np.ndarray]:
     return flat, np.arange(len(flat)).reshape(-1, 3)
 
 
-BALL = icosphere(2)  # 320 triangles
+BALL = icosphere(4)
+N = 5120  # triangles of it, of which twice as many are copied, and no more
 
 
 def color_of(scene: sf.Scene, spp: int = 64) -> np.ndarray:
@@ -65,8 +66,8 @@ def test_nodes_that_share_a_mesh_of_many_triangles_are_instances_and_the_same_pi
     mesh = [(*BALL, 0)]
     camera = sf.Camera((9, 4, 14), (9, 0, 0))
     scene = sf.load(write_gltf(tmp_path, mesh, places(7)))
-    assert (scene.info.instance_count, scene.info.triangle_count) == (7, 7 * 320 + 2)
-    assert scene.info.unique_triangle_count == 320 + 2
+    assert (scene.info.instance_count, scene.info.triangle_count) == (7, 7 * N + 2)
+    assert scene.info.unique_triangle_count == N + 2
     one_by_one = [sf.load(write_gltf(tmp_path, mesh, [node])).meshes[0] for node in places(7)]
     sky = (1.0, 1.0, 1.0)
     instanced = sf.Scene([shape for shape in scene.shapes if isinstance(shape, sf.Instances)], camera, sky, 2)
@@ -78,13 +79,13 @@ def test_nodes_that_share_a_mesh_of_many_triangles_are_instances_and_the_same_pi
 
 
 def test_few_triangles_are_copied_rather_than_instanced(tmp_path: Path) -> None:
-    scene = sf.load(write_gltf(tmp_path, [(*BALL, 0)], places(4)))
-    assert (scene.info.instance_count, scene.info.triangle_count) == (0, 4 * 320 + 2)
+    scene = sf.load(write_gltf(tmp_path, [(*BALL, 0)], places(2)))
+    assert (scene.info.instance_count, scene.info.triangle_count) == (0, 2 * N + 2)
 
 
 def test_emitters_are_instanced_too(tmp_path: Path) -> None:
     scene = sf.load(write_gltf(tmp_path, [(*BALL, 0)], places(7), [glow(3)]))
-    assert (scene.info.instance_count, scene.info.light_count) == (7, 7 * 320)
+    assert (scene.info.instance_count, scene.info.light_count) == (7, 7 * N)
     mirrored = color_of(sf.Scene(scene.shapes, sf.Camera((9, 0, 14), (9, 0, 0), vertical_fov=5)))
     assert mirrored.min() == 3  # node 3, whose scale mirrors it, shines outwards
 
@@ -92,7 +93,7 @@ def test_emitters_are_instanced_too(tmp_path: Path) -> None:
 def test_singular_placements_are_flattened(tmp_path: Path) -> None:
     flat = [{"mesh": 0, "scale": [1, 0, 1], "translation": [3 * k, 0, 0]} for k in range(7)]
     scene = sf.load(write_gltf(tmp_path, [(*BALL, 0)], [*places(7), *flat]))
-    assert (scene.info.instance_count, scene.info.triangle_count) == (7, 14 * 320 + 2)
+    assert (scene.info.instance_count, scene.info.triangle_count) == (7, 14 * N + 2)
 
 
 def test_the_instancing_extension(tmp_path: Path) -> None:
@@ -111,7 +112,7 @@ def test_the_instancing_extension(tmp_path: Path) -> None:
     assert np.allclose(second.vertices, [[4, 0, 5], [4, 2, 5], [3, 0, 5]], atol=1e-6)
     node["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 2, "SCALE": 0}}}
     path = write_gltf(tmp_path, [(*BALL, 0)], [node], arrays=rows)
-    with pytest.raises(ValueError, match=r"\[3, 960\] rows"):
+    with pytest.raises(ValueError, match=r"\[3, 15360\] rows"):
         sf.load(path)
 
 
@@ -190,7 +191,7 @@ def test_nodes_of_scale_zero_hide_what_is_below_them(
 def test_a_node_that_is_flattened_is_seen(tmp_path: Path) -> None:
     scene = sf.load(write_gltf(tmp_path, [(*BALL, 0)], [{"mesh": 0, "scale": [1, 0, 1]}]))
     assert scene.info.bounds_upper[0] > 0.9
-    assert len(scene.meshes[0].triangles) == 320
+    assert len(scene.meshes[0].triangles) == N
 
 
 def test_invisible_nodes_are_hidden(tmp_path: Path) -> None:
@@ -365,13 +366,13 @@ def test_a_small_file_that_asks_for_gigabytes_is_refused_before_they_are_taken(t
 def test_a_file_may_ask_for_more_where_the_caller_says_so(tmp_path: Path) -> None:
     path = write_gltf(tmp_path, [(*BALL, 0)], places(7))
     for limits, what in (
-        (sf.Limits(triangles=319), "320 triangles"),
+        (sf.Limits(triangles=N - 1), "5,120 triangles"),
         (sf.Limits(instances=6), "7 instances"),
         (sf.Limits(bytes=10_000), "bytes in all"),
     ):
         with pytest.raises(ValueError, match=f"t.gltf: it asks for .*{what}"):
             sf.load(path, limits=limits)
-    assert sf.load(path, limits=sf.Limits(triangles=320, instances=7)).info.instance_count == 7
+    assert sf.load(path, limits=sf.Limits(triangles=N, instances=7)).info.instance_count == 7
 
 
 def test_many_nodes_of_one_mesh_take_the_memory_of_one(tmp_path: Path) -> None:
@@ -384,8 +385,8 @@ def test_many_nodes_of_one_mesh_take_the_memory_of_one(tmp_path: Path) -> None:
 
 def test_copies_of_emitters_count_as_triangles(tmp_path: Path) -> None:
     path = write_gltf(tmp_path, [(*BALL, 0)], places(7), [glow(1)])
-    with pytest.raises(ValueError, match="2,240 triangles"):
-        sf.load(path, limits=sf.Limits(triangles=2239))
+    with pytest.raises(ValueError, match="35,840 triangles"):
+        sf.load(path, limits=sf.Limits(triangles=7 * N - 1))
     double = write_gltf(tmp_path, [(*SQUARE, 0)], (), [glow(1, doubleSided=True)])
     with pytest.raises(ValueError, match="4 triangles"):
         sf.load(double, limits=sf.Limits(triangles=3))
