@@ -166,19 +166,19 @@ class Placed:
     def _tell_of(
         self, attributes: dict[str, Any], positions: NDArray[np.float32], triangles: NDArray[np.uint32]
     ) -> None:
-        """Says what of the vertices is not shown, where it would be seen."""
-        note = self._document.note
+        """Says what of the vertices is not shown, where it would be seen. It is no reason to refuse a file."""
         seen = triangles[:: max(len(triangles) // _LOOKED_AT, 1)]
         if (seen >= len(positions)).any():
             return  # which `Mesh` refuses
-        if "NORMAL" in attributes:
-            normals = np.asarray(self._document.accessor(attributes["NORMAL"]), dtype=np.float64)
-            if len(normals) == len(positions) and _smooth(positions, seen, normals):
-                note("normals of vertices are not read: every triangle is flat")
-        if "COLOR_0" in attributes:
-            colors = self._document.accessor(attributes["COLOR_0"])[:, :3]
-            if (colors != (1 if colors.dtype.kind == "f" else np.iinfo(colors.dtype).max)).any():
-                note("colours of vertices are not read")
+        for name, matters, message in (
+            ("NORMAL", _smooth, "normals of vertices are not read: every triangle is flat"),
+            ("COLOR_0", _colored, "colours of vertices are not read"),
+        ):
+            try:
+                if name in attributes and matters(positions, seen, self._document.accessor(attributes[name])[seen]):
+                    self._document.note(message)
+            except (ValueError, KeyError, IndexError, TypeError, AttributeError, OSError, NotImplementedError) as error:
+                self._document.note(f"{name} of vertices is passed over: {error!r}")
 
     # ---- placements ----
 
@@ -249,10 +249,10 @@ class Placed:
         for mesh in self._double_sided:
             box = boxes[places[id(mesh)]]
             meetings = np.count_nonzero(((lower < box.upper) & (box.lower < upper)).all(axis=1)) if few else 2
+            self._document.source.take_bytes(120 * len(mesh.vertices) + 300 * len(mesh.triangles))
             if meetings <= 1 and not box.holds(eyes) and _closed_outward(mesh):  # it meets itself
                 continue
             self._document.source.take_triangles(len(mesh.triangles))
-            self._document.source.take_bytes(120 * len(mesh.vertices) + 300 * len(mesh.triangles))
             backs.append(_turned_over(mesh, gap))
         return backs
 
@@ -265,13 +265,20 @@ def _normals(part: _Part | Mesh) -> NDArray[np.float64]:
     return normals
 
 
-def _smooth(positions: NDArray[np.float32], triangles: NDArray[np.uint32], normals: NDArray[np.float64]) -> bool:
+def _smooth(positions: NDArray[np.float32], triangles: NDArray[np.uint32], normals: NDArray[Any]) -> bool:
+    """Whether any of the normals, one for each corner, shape (n, 3, 3), leans off its triangle's."""
     flat = _normals(_Part(positions, triangles, {}, False))
+    given = normals.astype(np.float64)
     lengths = np.linalg.norm(flat, axis=1)
-    given = normals[triangles]
     cosines = np.einsum("nc,nkc->nk", flat, given)
     limit = _SMOOTH * lengths[:, None] * np.linalg.norm(given, axis=2)
     return bool((np.abs(cosines) < limit)[lengths > 0].any())
+
+
+def _colored(_positions: NDArray[np.float32], _triangles: NDArray[np.uint32], colors: NDArray[Any]) -> bool:
+    """Whether any of the colours, one for each corner, shape (n, 3, 3 or 4), is not white."""
+    white = 1 if colors.dtype.kind == "f" else np.iinfo(colors.dtype).max
+    return bool((colors[..., :3] != white).any())
 
 
 def shown(transforms: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import io
 import logging
+import operator
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -128,6 +129,15 @@ def _camera_of(view: View, box: Box) -> Camera:
 
 def _names(views: list[View]) -> str:
     return ", ".join(f"{number} {view.name!r}" for number, view in enumerate(views))
+
+
+def _number(camera: Any) -> int:
+    try:
+        if not isinstance(camera, (bool, np.bool_)):
+            return operator.index(camera)
+    except TypeError:
+        pass
+    raise TypeError(f"camera is {camera!r}; give a name or a number")
 
 
 def _chosen(views: list[View], wanted: str | int | None) -> int:
@@ -266,8 +276,8 @@ def load(
     ValueError: 'room.max' ends in '.max'; files that can be loaded end in .obj, .ply, .stl, .gltf, .glb
     """
     source = Source(path, allow_outside=allow_outside, limits=limits)
-    if isinstance(camera, bool) or not isinstance(camera, (str, int, type(None))):
-        raise TypeError(f"camera is {camera!r}; give a name or a number")
+    if not isinstance(camera, (str, type(None))):
+        camera = _number(camera)
     if not isinstance(environment, (Environment, type(None))):
         raise TypeError(f"environment is {environment!r}; give a sunfleck.Environment")
     file = source.path

@@ -230,7 +230,14 @@ def three_cameras(tmp_path: Path) -> Path:
 
 @pytest.mark.parametrize(
     ("wanted", "position"),
-    [(None, (0, 1, 4)), (0, (0, 1, 4)), ("back", (0, 1, -4)), (1, (0, 1, -4)), ("1", (0, 1, -4)), ("own", (0, 9, 4))],
+    [
+        (None, (0, 1, 4)),
+        (0, (0, 1, 4)),
+        ("back", (0, 1, -4)),
+        (np.int64(1), (0, 1, -4)),
+        ("1", (0, 1, -4)),
+        ("own", (0, 9, 4)),
+    ],
 )
 def test_a_camera_by_name_or_number(three_cameras: Path, wanted: Any, position: Any) -> None:
     assert sf.load(three_cameras, camera=wanted).camera.position == position
@@ -288,6 +295,18 @@ def test_colours_of_vertices_are_told_unless_white(
 ) -> None:
     text = told(tmp_path, caplog, "COLOR_0", np.full((len(BALL[0]), 4), color))
     assert ("colours of vertices are not read" in text) == said
+
+
+def test_attributes_that_are_not_shown_are_no_reason_to_refuse_a_file(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    path = write_gltf(tmp_path, [(*BALL, 0)])
+    tree = json.loads(path.read_text())
+    tree["meshes"][0]["primitives"][0]["attributes"] |= {"NORMAL": 99, "COLOR_0": 1}
+    path.write_text(json.dumps(tree))
+    with caplog.at_level("INFO", "sunfleck"):
+        sf.load(path)
+    assert "NORMAL of vertices is passed over" in caplog.text
 
 
 def test_extensions_and_animations_are_told_and_harmless_ones_may_be_required(
