@@ -21,7 +21,7 @@ from sunfleck.bounds import Box
 from sunfleck.instances import Instances
 from sunfleck.material import Dielectric
 from sunfleck.mesh import Mesh
-from sunfleck.render import render
+from sunfleck.render import Image, render
 from sunfleck.scene import Camera, Scene
 from sunfleck.sky import Sun
 
@@ -163,9 +163,17 @@ def lit_scene(
     return Scene._silent([*shapes, lamp.mesh(up)], camera), lamp, share
 
 
+def _rendered(scene: Scene, aovs: Sequence[str]) -> Image:
+    """A small picture; Ctrl-C, which would end a picture, ends the loading."""
+    image = render(scene, _PIXELS, _PIXELS, spp=_SAMPLES, aovs=aovs)
+    if image.interrupted:
+        raise KeyboardInterrupt
+    return image
+
+
 def _look(scene: Scene) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Radiance and albedo of the pixels that show a surface, as means over colours."""
-    image = render(scene, _PIXELS, _PIXELS, spp=_SAMPLES, aovs=("albedo",))
+    image = _rendered(scene, ("albedo",))
     seen = image.alpha > 0.5
     radiance, albedo = (a.astype(np.float64).mean(axis=-1)[seen] for a in (image.color, image.aovs["albedo"]))
     return radiance, albedo
@@ -292,7 +300,7 @@ class _Probe:
     def look(self, suns: Sequence[Sun], emitters: Sequence[Mesh] = ()) -> NDArray[np.float64]:
         """Renders direct light; the depths along the camera's axis of what is seen and does not emit."""
         scene = Scene._silent([*self._shapes, *emitters], self._camera, max_bounces=1, suns=suns)
-        image = render(scene, _PIXELS, _PIXELS, spp=_SAMPLES, aovs=("albedo", "depth"))
+        image = _rendered(scene, ("albedo", "depth"))
         cover = image.aovs["albedo"][..., 0] / _GREY
         seen = (cover > 0.5) & (image.alpha - cover < 0.02)  # no emitter in the pixel
         self._color = (image.color / np.maximum(cover, 0.5)[..., None])[seen]

@@ -95,6 +95,24 @@ def test_suns_and_environments_are_taken_as_they_are(tmp_path: Path) -> None:
     assert len(sf.load(write_gltf(tmp_path, [(*CUBE, 0)], [{"mesh": 0}, node], extensions=lights)).meshes) == 1
 
 
+@pytest.mark.parametrize("looks", [0, 1, 2])
+def test_ctrl_c_in_a_look_ends_the_loading(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, looks: int) -> None:
+    """A render takes the signal itself and returns the picture so far; here it is stopped as if by one."""
+    done = []
+
+    def stopped(scene: sf.Scene, width: int, height: int, **options: Any) -> sf.Image:
+        done.append(scene)
+        if len(done) <= looks:
+            return sf.render(scene, width, height, **options)
+        return sf.render(scene, width, height, **{**options, "spp": 2**20}, progress=lambda _: False)
+
+    path = write_gltf(tmp_path, [(*ROOM, 0)], [{"mesh": 0}, looking((0, 1.5, 2), (0, 1, 0))], cameras=[CAMERA])
+    monkeypatch.setattr("sunfleck.lamp.render", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        sf.load(path)
+    assert len(done) == looks + 1
+
+
 def test_glass_and_mirrors_are_seen_through_and_counted(tmp_path: Path) -> None:
     """A cube in a glass box: the lamp stands outside, and what is in the box is lit through it."""
     glass = {
