@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import io
 import logging
 import operator
 from collections.abc import Callable, Sequence
@@ -21,10 +20,13 @@ from sunfleck.gltf import Contents, View, read_gltf
 from sunfleck.instances import Instances
 from sunfleck.lamp import emits, lit_scene
 from sunfleck.mesh import Mesh
+from sunfleck.obj import read_obj
+from sunfleck.ply import read_ply
 from sunfleck.scene import Camera, Scene
 from sunfleck.scenes import SCENES
 from sunfleck.sky import Environment
 from sunfleck.source import Limits, Source
+from sunfleck.stl import read_stl
 
 __all__ = ["FILE_TYPES", "load", "scene_by_name", "z_is_up"]
 
@@ -36,56 +38,11 @@ _FOV = 40.0
 _CAMERA_DIRECTION = (0.5, 0.4, 1.0)
 
 
-def _decode(data: bytes) -> bytes:
-    """Text as UTF-8, from UTF-16 with its mark, UTF-8, or else Latin-1, which takes every byte."""
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        return data.decode("utf-16").encode()
-    try:
-        data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return data.decode("latin-1").encode()
-    return data
-
-
-def _colors(material: Any) -> dict[str, Any]:
-    """Kd and Ke of an OBJ material, where it has them."""
-    values = getattr(material, "kwargs", {})
-    colors = {}
-    for ours, theirs in (("albedo", "kd"), ("emission", "ke")):
-        if theirs in values:
-            given = values[theirs] if isinstance(values[theirs], list) else [values[theirs]]
-            # A single number stands for all three.
-            colors[ours] = vector(theirs, [float(v) for v in (given * 3 if len(given) == 1 else given)[:3]])
-    return colors
-
-
-def _read_by_trimesh(source: Source) -> Contents:
-    import trimesh
-
-    path = source.path
-    kind = path.suffix[1:].lower()
-    data = source.read()
-    scene = trimesh.load_scene(
-        io.BytesIO(_decode(data) if kind == "obj" else data),
-        file_type=kind,
-        process=False,
-        resolver=trimesh.resolvers.FilePathResolver(str(path)),
-    )
-    meshes: list[Mesh | Instances] = []
-    for geometry in scene.geometry.values():
-        if not isinstance(geometry, trimesh.Trimesh) or len(geometry.faces) == 0:
-            _log.info("%s: points and lines are left out", path)
-            continue
-        colors = _colors(getattr(geometry.visual, "material", None))
-        meshes.append(Mesh(geometry.vertices.view(np.ndarray), geometry.faces.view(np.ndarray), **colors))
-    return Contents(meshes)
-
-
 # Ending: the reader, and whether z is up (else y).
 FILE_TYPES: dict[str, tuple[Callable[[Source], Contents], bool]] = {
-    ".obj": (_read_by_trimesh, False),
-    ".ply": (_read_by_trimesh, True),
-    ".stl": (_read_by_trimesh, True),
+    ".obj": (read_obj, False),
+    ".ply": (read_ply, True),
+    ".stl": (read_stl, True),
     ".gltf": (read_gltf, False),
     ".glb": (read_gltf, False),
 }

@@ -12,12 +12,13 @@ on its border.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Triangulation", "triangulate"]
+__all__ = ["Triangulation", "compact", "triangulate"]
 
 _Floats = NDArray[np.float64]
 _Indices = NDArray[np.int64]
@@ -34,14 +35,27 @@ _SPIKE, _EAR, _TOUCHING, _CROSSED, _STRAIGHT, _REFLEX = 5.0, 3.0, 2.0, 1.0, 0.5,
 
 @dataclass(frozen=True)
 class Triangulation:
-    """Triangles of vertex indices (m, 3), the polygon that each is of (m,), and how many polygons cross themselves."""
+    """Triangles of vertex indices, shape (m, 3), and the polygon that each is of, shape (m,)."""
 
     triangles: _Indices
     polygons: _Indices
-    crossing: int
 
 
-def triangulate(vertices: _Floats, corners: _Indices, counts: _Indices) -> Triangulation:
+def compact(vertices: _Floats, triangles: _Indices) -> tuple[_Floats, _Indices]:
+    """Only the vertices that the triangles use, in their order, and the triangles over them."""
+    if 8 * triangles.size < len(vertices):
+        used, inverse = np.unique(triangles, return_inverse=True)
+        return vertices[used], inverse.reshape(triangles.shape)
+    mask = np.zeros(len(vertices), np.bool_)
+    mask[triangles] = True
+    if mask.all():
+        return vertices, triangles
+    return vertices[mask], (np.cumsum(mask) - 1)[triangles]
+
+
+def triangulate(
+    vertices: _Floats, corners: _Indices, counts: _Indices, note: Callable[[str], None]
+) -> Triangulation:
     """Polygons as triangles, in the polygons' order and wound as they are.
 
     Parameters
@@ -52,13 +66,15 @@ def triangulate(vertices: _Floats, corners: _Indices, counts: _Indices) -> Trian
         The polygons' vertex indices, each in [0, n), one polygon after the other.
     counts : ndarray, shape (p,), int64
         Corners of each polygon, which sum to k. Polygons of fewer than three become nothing.
+    note : callable
+        Is told how many polygons cross themselves: no triangles fit them.
 
     Returns
     -------
     Triangulation
     """
     if len(counts) and (counts == 3).all():
-        return Triangulation(corners.reshape(-1, 3), np.arange(len(counts)), 0)
+        return Triangulation(corners.reshape(-1, 3), np.arange(len(counts)))
     sizes = np.maximum(counts - 2, 0)
     first_corner, first_triangle = np.cumsum(counts) - counts, np.cumsum(sizes) - sizes
     triangles = np.empty((int(sizes.sum()), 3), np.int64)
@@ -76,7 +92,9 @@ def triangulate(vertices: _Floats, corners: _Indices, counts: _Indices) -> Trian
                 crossing += int(crossed.sum())
             parts = np.take_along_axis(index, cut.reshape(len(rows), -1), axis=1).reshape(cut.shape)
             triangles[first_triangle[rows, None] + np.arange(n - 2)] = parts
-    return Triangulation(triangles, np.repeat(np.arange(len(counts)), sizes), crossing)
+    if crossing:
+        note(f"polygons that cross themselves, and may be filled another way than elsewhere: {crossing}")
+    return Triangulation(triangles, np.repeat(np.arange(len(counts)), sizes))
 
 
 def _flattened(points: _Floats) -> tuple[_Floats, _Floats, _Floats]:
