@@ -14,7 +14,7 @@ Examples
 (64, 64, 3)
 """
 
-# What is heavy (OpenImageIO, trimesh, tqdm, SciPy) is imported where it is used, not here.
+# What is heavy (OpenImageIO, tqdm, SciPy) is imported where it is used, not here.
 from typing import TYPE_CHECKING, Any
 
 from sunfleck import estimate, mapping, scenes, uniformity

@@ -134,7 +134,7 @@ class Lines:
     def _text(self, chosen: _Mask, until_slash: bool) -> bytes:
         """The bytes of those lines, one after the other."""
         taken = self.bytes[np.repeat(chosen, self.ends + 1 - self.starts)]
-        slashes = np.flatnonzero(taken == _SLASH) if until_slash else ()
+        slashes = np.flatnonzero((taken == _SLASH) & until_slash)
         if len(slashes):
             # Whether the last space or slash up to each byte is a slash.
             spaces = np.flatnonzero(taken <= _SPACE)

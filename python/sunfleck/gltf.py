@@ -8,9 +8,6 @@ Read: node transforms, triangles of all three modes, sparse and quantized positi
 textures, normals and colours of vertices, points and lines, skins, morph targets, animations, orthographic
 cameras, point and spot lights. Reference: Khronos Group 2021, "glTF 2.0 Specification" (ISO/IEC 12113:2022);
 its extensions KHR_lights_punctual, KHR_mesh_quantization, KHR_node_visibility and EXT_mesh_gpu_instancing.
-
-trimesh is not used here: it gives sparse accessors as zeros, leaves out triangle fans and the emissive
-strength, and finds only cameras that are children of the root.
 """
 
 from __future__ import annotations

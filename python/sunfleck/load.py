@@ -16,6 +16,7 @@ import numpy as np
 from sunfleck._arguments import vector
 from sunfleck._files import FilePath
 from sunfleck.bounds import Box, box_of
+from sunfleck.error import Error
 from sunfleck.gltf import Contents, View, read_gltf
 from sunfleck.instances import Instances
 from sunfleck.lamp import emits, lit_scene
@@ -55,8 +56,10 @@ def _read(source: Source) -> Contents:
     try:
         with np.errstate(all="ignore"):  # what comes out not finite is refused with the mesh or camera
             return reader(source)
-    except (OSError, MemoryError):
+    except (OSError, MemoryError, Error):
         raise
+    except ImportError as error:
+        raise NotImplementedError(f"{path}: it takes {error.name!r} to read it, which is not installed") from error
     except NotImplementedError as error:
         raise NotImplementedError(f"{path}: {error}") from error
     except ValueError as error:
@@ -187,12 +190,13 @@ def load(
     Raises
     ------
     ValueError
-        An unknown ending; a malformed file; a file without triangles; one that refers to files outside of its
-        folder, or asks for more than the limits; a camera that is not in it.
+        An unknown ending; a malformed file, of which the line is named where it is text; a file without triangles;
+        one that refers to files outside of its folder, or asks for more than the limits; a camera that is not in it.
     NotImplementedError
         A glTF that requires an extension or version that is not read.
     OSError
-        The file, or one that it refers to, can't be read, or is no ordinary file (a pipe, a device).
+        The file, or one that it refers to, can't be read, or is no ordinary file (a pipe, a device). A library of
+        materials that is missing is no error: its materials are 0.5 grey, and the log says so.
     TypeError
         ``path`` is not a path; another argument of the wrong kind.
     MemoryError, sunfleck.Error
@@ -200,7 +204,10 @@ def load(
 
     Notes
     -----
-    Surfaces of OBJ, PLY and STL are diffuse: OBJ's Kd and Ke, 0.5 grey where there is none. glTF's
+    Polygons of any shape become triangles. Surfaces of PLY and STL are diffuse and 0.5 grey. OBJ's
+    are, by illum, Kd, Ks, Tf and d, one thing each: ``Mirror()`` or, where Fresnel's law is asked for,
+    ``Conductor(0)`` of albedo Ks; ``Dielectric(Ni)`` of albedo Tf; ``Conductor`` of albedo Kd, where Pm
+    or Blender's Ka say metal; else diffuse, of albedo Kd. All emit Ke. docs/scene.md has the rules. glTF's
     have its base colour and emission (times emissive strength), and are one thing each, since
     materials are not mixed: ``Conductor(roughness)`` where metallicFactor, by default 1, is 0.5 or
     more and the roughness at most 0.6; else ``Dielectric(ior, roughness)`` where transmissionFactor

@@ -39,9 +39,10 @@ _LEFT_OUT = {
     **dict.fromkeys(("maplib", "usemap"), "texture maps of faces (usemap) are left out"),
 }
 # Names and groups show nowhere; the others belong to free-form statements.
-_WITHOUT_EFFECT = set(
-    "g o mg bevel lod c_interp d_interp ctech stech bmat step cstype deg parm trim hole scrv sp end con".split()
-)
+_WITHOUT_EFFECT = {
+    *("g", "o", "mg", "bevel", "lod", "c_interp", "d_interp", "ctech", "stech", "bmat", "step", "cstype", "deg"),
+    *("parm", "trim", "hole", "scrv", "sp", "end", "con"),
+}
 
 
 def read_obj(source: Source) -> Contents:
@@ -54,7 +55,7 @@ def read_obj(source: Source) -> Contents:
     OSError
         The file, or a library of materials that is there, can't be read.
     """
-    return Contents(_Reader(source).read())
+    return Contents([*_Reader(source).read()])
 
 
 class _Reader:
@@ -108,7 +109,7 @@ class _Reader:
     def _statements(self, lines: Lines, chosen: _Mask, start: int) -> Iterator[tuple[int, int]]:
         """The lines that change the material, with its number; what the others hold is noted."""
         for index in np.flatnonzero(chosen).tolist():
-            word, rest = (decoded(lines.line(index)).split(None, 1) + [""])[:2]
+            word, rest = [*decoded(lines.line(index)).split(None, 1), ""][:2]
             keyword = word.lower()
             if keyword == "usemtl":
                 self._current = self._numbers.setdefault(rest, len(self._numbers))
@@ -175,7 +176,9 @@ class _Reader:
             at = int(np.argmax(corners >= self._vertex_count))
             face = int(np.searchsorted(np.cumsum(counts), at, side="right"))
             offset = int(np.concatenate(self._offsets)[face])
-            raise refusal(self._text, offset, f"there is no vertex {corners[at] + 1}: the file has {self._vertex_count}")
+            raise refusal(
+                self._text, offset, f"there is no vertex {corners[at] + 1}: the file has {self._vertex_count}"
+            )
         few = int((counts < 3).sum())
         if few:
             self._note(f"faces of fewer than three corners are left out: {few}")

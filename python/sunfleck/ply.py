@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,11 +29,11 @@ __all__ = ["read_ply"]
 
 _Indices = NDArray[np.int64]
 
-_TYPES = {
-    **{"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4"},
-    **{"float": "f4", "double": "f8", "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2"},
-    **{"int32": "i4", "uint32": "u4", "float32": "f4", "float64": "f8", "int64": "i8", "uint64": "u8"},
-}
+_TYPES = dict(
+    zip(("char", "uchar", "short", "ushort", "int", "uint"), ("i1", "u1", "i2", "u2", "i4", "u4"), strict=True)
+)
+_TYPES |= {f"int{n}": f"i{n // 8}" for n in (8, 16, 32, 64)} | {f"uint{n}": f"u{n // 8}" for n in (8, 16, 32, 64)}
+_TYPES |= {"float": "f4", "double": "f8", "float32": "f4", "float64": "f8"}
 _ORDERS = {"binary_little_endian": "<", "binary_big_endian": ">", "ascii": "="}
 _INDEX_NAMES = ("vertex_indices", "vertex_index")
 _FACES, _STRIPS = ("face", "faces"), ("tristrips", "tristrip")
@@ -66,15 +67,15 @@ def read_ply(source: Source) -> Contents:
         reader = TextBody(text, len(text) - len(with_newlines(body)))
     else:
         reader = BinaryBody(body, _ORDERS[kind])
-    vertices: NDArray[np.float64] | None = None
-    corners: list[_Indices] = []
+    vertices: NDArray[Any] | None = None
+    corners: list[NDArray[Any]] = []
     counts: list[_Indices] = []
     for element in elements:
         source.take_bytes(8 * element.count * max(1, len(element.properties)))
         if element.name not in wanted:
             reader.skip(element)
         elif element.name == "vertex":
-            vertices = np.stack(reader.scalars(element, ("x", "y", "z")), axis=1, dtype=np.float64)
+            vertices = np.stack(reader.scalars(element, ("x", "y", "z")), axis=1)
         else:
             lists = reader.lists(element, next(p.name for p in element.properties if p.name in _INDEX_NAMES))
             if element.name in _STRIPS:
@@ -86,16 +87,18 @@ def read_ply(source: Source) -> Contents:
         note(f"{left} behind the last element are left out")
     if vertices is None or not corners:
         return Contents([])
-    return Contents(_meshes(source, vertices, np.concatenate(corners), np.concatenate(counts), note))
+    return Contents([*_meshes(source, vertices, np.concatenate(corners), np.concatenate(counts), note)])
 
 
 def _meshes(
-    source: Source, vertices: NDArray[np.float64], corners: _Indices, counts: _Indices, note: Callable[[str], None]
+    source: Source, vertices: NDArray[Any], corners: NDArray[Any], counts: _Indices, note: Callable[[str], None]
 ) -> list[Mesh]:
     if len(corners) and not 0 <= corners.min() <= corners.max() < len(vertices):
         at = int(np.argmax((corners < 0) | (corners >= len(vertices))))
         face = int(np.searchsorted(np.cumsum(counts), at, side="right"))
-        raise ValueError(f"face {face} has vertex index {corners[at]}; the file has {len(vertices)} vertices, from 0 on")
+        raise ValueError(
+            f"face {face} has vertex index {corners[at]}; the file has {len(vertices)} vertices, from 0 on"
+        )
     few = int((counts < 3).sum())
     if few:
         note(f"faces of fewer than three corners are left out: {few}")
@@ -111,13 +114,15 @@ def _meshes(
 
 def _strips(lists: Lists) -> Lists:
     """Triangles of strips; every second one is wound the other way, from each strip's start on."""
-    values, counts = lists.values, lists.counts
+    values, counts = lists.values.astype(np.int64), lists.counts
     starts = np.zeros(len(values) + 1, np.bool_)  # where a strip starts: at a list's, and behind each -1
     starts[np.concatenate([[0], np.cumsum(counts)])] = True
     starts[1:] |= values == -1
     first = np.flatnonzero(starts)[np.cumsum(starts[:-1]) - 1] if len(values) else np.empty(0, np.int64)
     # A triangle begins at each corner that has two more of its own strip behind it.
-    begins = np.flatnonzero((values[:-2] >= 0) & (values[1:-1] >= 0) & (values[2:] >= 0) & ~starts[1:-2] & ~starts[2:-1])
+    begins = np.flatnonzero(
+        (values[:-2] >= 0) & (values[1:-1] >= 0) & (values[2:] >= 0) & ~starts[1:-2] & ~starts[2:-1]
+    )
     odd = (begins - first[begins]) % 2
     triangles = np.stack([values[begins], values[begins + 1 + odd], values[begins + 2 - odd]], axis=1)
     # Strips repeat a corner to turn; such triangles are no part of the surface.
@@ -136,7 +141,9 @@ def _split(data: bytes) -> tuple[list[str], bytes]:
         raise ValueError(f"it starts with {data[:12]!r}; a PLY file starts with a line 'ply'")
     newline = first[1]
     # A carriage return alone at a line's end may be followed by a byte 10 of data, so the first line decides.
-    last = re.compile(rb"(?:\r\n|\n|\r)end_header[ \t]*" + (rb"(?:\r\n|\r)" if newline == b"\r\n" else newline)).search(data)
+    last = re.compile(rb"(?:\r\n|\n|\r)end_header[ \t]*" + (rb"(?:\r\n|\r)" if newline == b"\r\n" else newline)).search(
+        data
+    )
     if not last:
         raise ValueError("it has no line 'end_header'")
     lines = data[: last.start()].decode("latin-1").replace("\r\n", "\n").replace("\r", "\n").split("\n")
@@ -162,10 +169,12 @@ def _read_header(lines: list[str], note: Callable[[str], None]) -> tuple[str, li
                     note("textures are not read: surfaces are 0.5 grey")
                 case [] | ["ply"] | ["comment" | "obj_info", *_]:
                     pass
+                case [word, *_] if word not in ("format", "element", "property"):
+                    note(f"line {number} of the header is left out: {line.strip()[:60]!r}")
                 case _:
                     raise ValueError(
-                        "format, element NAME COUNT, property TYPE NAME, property list TYPE TYPE NAME and comment are "
-                        f"allowed, after an element for properties, with the types {', '.join(_TYPES)}"
+                        "format KIND 1.0, element NAME COUNT and then property TYPE NAME or property list "
+                        f"TYPE TYPE NAME are allowed, with the types {', '.join(_TYPES)}"
                     )
         except ValueError as error:
             raise ValueError(f"line {number} is {line.strip()[:60]!r}: {error}") from None
@@ -196,7 +205,9 @@ def _note_properties(elements: list[Element], note: Callable[[str], None]) -> No
         if element.name in ("vertex", *_FACES, *_STRIPS):
             names = [p.name for p in element.properties if p.name not in ("x", "y", "z", *_INDEX_NAMES)]
             for words, what in _SHOWN:
-                hit = [n for n in names if n in words or any(n.startswith(w) for w in words if w[-1] == "_" or len(w) > 5)]
+                hit = [
+                    n for n in names if n in words or any(n.startswith(w) for w in words if w[-1] == "_" or len(w) > 5)
+                ]
                 names = [n for n in names if n not in hit]
                 if hit:
                     note(f"{what} of elements {element.name} are left out: {', '.join(hit)}")

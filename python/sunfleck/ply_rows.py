@@ -19,7 +19,18 @@ __all__ = ["BinaryBody", "Element", "Lists", "Property", "TextBody"]
 
 _Indices = NDArray[np.int64]
 
-_LETTERS = {"i1": "b", "u1": "B", "i2": "h", "u2": "H", "i4": "i", "u4": "I", "i8": "q", "u8": "Q", "f4": "f", "f8": "d"}
+_LETTERS = {
+    "i1": "b",
+    "u1": "B",
+    "i2": "h",
+    "u2": "H",
+    "i4": "i",
+    "u4": "I",
+    "i8": "q",
+    "u8": "Q",
+    "f4": "f",
+    "f8": "d",
+}
 
 
 @dataclass(frozen=True)
@@ -44,8 +55,26 @@ class Element:
 class Lists:
     """The values of all rows' lists, one after the other, and how many each row has."""
 
-    values: _Indices
+    values: NDArray[Any]
     counts: _Indices
+
+
+@dataclass(frozen=True)
+class _Evenly:
+    """Offsets of rows that all have the same size."""
+
+    first: int
+    stride: int
+    count: int
+
+    def moved(self, by: int) -> _Evenly:
+        return _Evenly(self.first + by, self.stride, self.count)
+
+    def index(self) -> _Indices:
+        return self.first + self.stride * np.arange(self.count)
+
+
+_Starts = _Evenly | _Indices
 
 
 def _ranges(starts: _Indices, counts: _Indices, step: int) -> _Indices:
@@ -74,7 +103,9 @@ class BinaryBody:
     def scalars(self, element: Element, names: Sequence[str]) -> list[NDArray[Any]]:
         """The columns of those names, each of shape (count,)."""
         columns = self._columns(element)
-        return [self._values(columns[name], next(p.type for p in element.properties if p.name == name)) for name in names]
+        return [
+            self._values(columns[name], next(p.type for p in element.properties if p.name == name)) for name in names
+        ]
 
     def lists(self, element: Element, name: str) -> Lists:
         """The lists of that name."""
@@ -82,38 +113,40 @@ class BinaryBody:
         prop = next(p for p in element.properties if p.name == name)
         assert prop.length is not None
         counts = self._values(starts, prop.length).astype(np.int64)
-        size = _size(prop.type)
-        first = starts + _size(prop.length)
-        if len(counts) and (counts == counts[0]).all() and len(np.unique(np.diff(first[:2]))) == 1:
-            stride = int(first[1] - first[0])
-            if (np.diff(first) == stride).all():  # all rows alike: no index for each value
-                shape, strides = (len(first), int(counts[0])), (stride, size)
-                rows = np.ndarray(shape, self._order + prop.type, self._data, int(first[0]), strides)
-                return Lists(rows.astype(np.int64).ravel(), counts)
-        return Lists(self._values(_ranges(first, counts, size), prop.type).astype(np.int64), counts)
+        before, size = _size(prop.length), _size(prop.type)
+        if isinstance(starts, _Evenly) and starts.count:
+            shape, strides = (starts.count, int(counts[0])), (starts.stride, size)
+            rows = np.ndarray(shape, self._order + prop.type, self._data, starts.first + before, strides)
+            return Lists(rows.astype(prop.type).ravel(), counts)
+        first = starts.index() if isinstance(starts, _Evenly) else starts
+        return Lists(self._values(_ranges(first + before, counts, size), prop.type), counts)
 
     def left(self) -> str:
         """What no element has asked for."""
         size = len(self._data) - self._at
         return f"{size} bytes" if size else ""
 
-    def _values(self, at: _Indices, kind: str) -> NDArray[Any]:
+    def _values(self, at: _Starts, kind: str) -> NDArray[Any]:
         """Numbers of a type from anywhere in the file."""
         dtype = np.dtype(self._order + kind)
+        if isinstance(at, _Evenly):
+            there: NDArray[Any] = np.ndarray((at.count,), dtype, self._data, at.first, (at.stride,))
+            return there.astype(kind)
         if not len(at):
-            return np.empty(0, dtype)
+            return np.empty(0, kind)
         everywhere: NDArray[Any] = np.ndarray((len(self._data) - dtype.itemsize + 1,), dtype, self._data, strides=(1,))
-        return everywhere[at]
+        return everywhere[at].astype(kind, copy=False)
 
-    def _columns(self, element: Element) -> dict[str, _Indices]:
+    def _columns(self, element: Element) -> dict[str, _Starts]:
         """Where each column of each row starts; of a list, where its length stands."""
         pieces = self._pieces(element)
         starts = self._walk(element, pieces)
-        columns: dict[str, _Indices] = {}
+        columns: dict[str, _Starts] = {}
         for piece, start in zip(pieces, starts, strict=True):
+            offset = 0
             for prop in piece:
-                columns[prop.name] = start
-                start = start + _size(prop.length or prop.type)
+                columns[prop.name] = start.moved(offset) if isinstance(start, _Evenly) else start + offset
+                offset += _size(prop.length or prop.type)
         return columns
 
     @staticmethod
@@ -126,14 +159,14 @@ class BinaryBody:
                 pieces.append([])
         return pieces
 
-    def _walk(self, element: Element, pieces: list[list[Property]]) -> list[_Indices]:
+    def _walk(self, element: Element, pieces: list[list[Property]]) -> Sequence[_Starts]:
         """Where each piece of each row starts."""
         widths = [sum(_size(p.length or p.type) for p in piece) for piece in pieces]
         if len(pieces) == 1:
             end = self._at + element.count * widths[0]
             if end > len(self._data):
                 raise self._cut_short(element, (len(self._data) - self._at) // widths[0])
-            starts = self._at + widths[0] * np.arange(element.count)
+            starts = _Evenly(self._at, widths[0], element.count)
             self._at = end
             return [starts]
         lengths = [p for p in element.properties if p.length is not None]
@@ -144,10 +177,10 @@ class BinaryBody:
         alike = self._alike(element, steps, widths[-1])
         return self._row_by_row(element, steps, widths[-1]) if alike is None else alike
 
-    def _alike(self, element: Element, steps: list[_Step], tail: int) -> list[_Indices] | None:
+    def _alike(self, element: Element, steps: list[_Step], tail: int) -> list[_Evenly] | None:
         """The pieces' starts, if all rows' lists are as long as the first row's."""
         if element.count == 0:
-            return [np.empty(0, np.int64)] * (len(steps) + 1)
+            return [_Evenly(self._at, 1, 0)] * (len(steps) + 1)
         at, starts, lengths = self._at, [self._at], []
         for before, width, size, read in steps:
             try:
@@ -159,18 +192,18 @@ class BinaryBody:
         stride = at + tail - self._at
         if self._at + stride * element.count > len(self._data):
             return None
-        rows = stride * np.arange(element.count)
         kinds = [p.length for p in element.properties if p.length is not None]
         for (before, *_), start, length, kind in zip(steps, starts, lengths, kinds, strict=False):
             there = np.ndarray((element.count,), self._order + kind, self._data, start + before, (stride,))
             if not (there == length).all():
                 return None
         self._at += stride * element.count
-        return [start + rows for start in starts]
+        return [_Evenly(start, stride, element.count) for start in starts]
 
     def _row_by_row(self, element: Element, steps: list[_Step], tail: int) -> list[_Indices]:
         """The same where lists differ: each length leads to what follows."""
-        at, starts = self._at, []
+        starts: list[int] = []
+        at = self._at
         append = starts.append
         try:
             for _ in range(element.count):
@@ -196,7 +229,9 @@ class BinaryBody:
         def read(at: int) -> int:
             (length,) = unpack(data, at)
             if length < 0 or length != int(length):
-                raise ValueError(f"a list has the length {length} at byte {at} behind the header; lengths are 0 or more")
+                raise ValueError(
+                    f"a list has the length {length} at byte {at} behind the header; lengths are 0 or more"
+                )
             return int(length)
 
         return read
@@ -281,21 +316,28 @@ class TextBody:
         values = lines.numbers(chosen, np.float64, f"elements {element.name!r} are numbers")
         ends = np.cumsum(lines.words[rows])
         at = ends - lines.words[rows]
-        why = f"elements {element.name!r} have {', '.join(p.name + (' (a list)' if p.length else '') for p in element.properties)}"
+        columns = [p.name + (" (a list)" if p.length else "") for p in element.properties]
+        why = f"elements {element.name!r} have {', '.join(columns)}"
         table = {}
         for prop in element.properties:
             counts = np.ones(len(rows), np.int64)
             if prop.length is not None:
                 _refuse_rows(rows, at >= ends, why)
                 lengths = values[at]
-                _refuse_rows(rows, ~((lengths >= 0) & (lengths < 1e9) & (lengths % 1 == 0)), "a list starts with its length")
+                _refuse_rows(
+                    rows, ~((lengths >= 0) & (lengths < 1e9) & (lengths % 1 == 0)), "a list starts with its length"
+                )
                 counts, at = lengths.astype(np.int64), at + 1
             _refuse_rows(rows, at + counts > ends, why)
             found = values[_ranges(at, counts, 1)]
             if prop.length is not None and prop.type[0] in "iu" and len(found):
                 wrong = ~(np.abs(found) < 2.0**62) | (found % 1 != 0)
                 if wrong.any():
-                    _refuse_rows(rows, np.bincount(np.repeat(np.arange(len(rows)), counts), wrong) > 0, "values of lists are whole")
+                    _refuse_rows(
+                        rows,
+                        np.bincount(np.repeat(np.arange(len(rows)), counts), wrong) > 0,
+                        "values of lists are whole",
+                    )
             table[prop.name] = (found, counts)
             at = at + counts
         _refuse_rows(rows, at < ends, why)

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,7 @@ from numpy.typing import NDArray
 __all__ = ["Triangulation", "compact", "triangulate"]
 
 _Floats = NDArray[np.float64]
+_Coordinates = NDArray[Any]  # real numbers of any type
 _Indices = NDArray[np.int64]
 _Mask = NDArray[np.bool_]
 
@@ -37,11 +39,11 @@ _SPIKE, _EAR, _TOUCHING, _CROSSED, _STRAIGHT, _REFLEX = 5.0, 3.0, 2.0, 1.0, 0.5,
 class Triangulation:
     """Triangles of vertex indices, shape (m, 3), and the polygon that each is of, shape (m,)."""
 
-    triangles: _Indices
+    triangles: NDArray[Any]
     polygons: _Indices
 
 
-def compact(vertices: _Floats, triangles: _Indices) -> tuple[_Floats, _Indices]:
+def compact(vertices: _Coordinates, triangles: NDArray[Any]) -> tuple[_Coordinates, NDArray[Any]]:
     """Only the vertices that the triangles use, in their order, and the triangles over them."""
     if 8 * triangles.size < len(vertices):
         used, inverse = np.unique(triangles, return_inverse=True)
@@ -54,15 +56,15 @@ def compact(vertices: _Floats, triangles: _Indices) -> tuple[_Floats, _Indices]:
 
 
 def triangulate(
-    vertices: _Floats, corners: _Indices, counts: _Indices, note: Callable[[str], None]
+    vertices: _Coordinates, corners: NDArray[Any], counts: _Indices, note: Callable[[str], None]
 ) -> Triangulation:
     """Polygons as triangles, in the polygons' order and wound as they are.
 
     Parameters
     ----------
-    vertices : ndarray, shape (n, 3), float64
+    vertices : ndarray, shape (n, 3), real
         Positions, in any unit.
-    corners : ndarray, shape (k,), int64
+    corners : ndarray, shape (k,), integer
         The polygons' vertex indices, each in [0, n), one polygon after the other.
     counts : ndarray, shape (p,), int64
         Corners of each polygon, which sum to k. Polygons of fewer than three become nothing.
@@ -88,7 +90,7 @@ def triangulate(
             if n == 3:
                 cut: _Indices = np.broadcast_to(np.arange(3), (len(rows), 1, 3))
             else:
-                cut, crossed = _cut(vertices[index])
+                cut, crossed = _cut(vertices[index].astype(np.float64))
                 crossing += int(crossed.sum())
             parts = np.take_along_axis(index, cut.reshape(len(rows), -1), axis=1).reshape(cut.shape)
             triangles[first_triangle[rows, None] + np.arange(n - 2)] = parts
@@ -137,7 +139,7 @@ def _turn(ax: _Floats, ay: _Floats, bx: _Floats, by: _Floats, cx: _Floats, cy: _
     return result
 
 
-def _at(values: NDArray[np.generic], index: _Indices) -> NDArray[np.generic]:
+def _at(values: NDArray[Any], index: _Indices) -> NDArray[Any]:
     return np.take_along_axis(values, index, axis=1)
 
 
@@ -174,7 +176,7 @@ class _Ears:
 
     def _best(self) -> _Indices:
         """The corner that each polygon loses next."""
-        best = self.score.argmax(axis=1)
+        best: _Indices = self.score.argmax(axis=1)
         value = self.score[np.arange(len(best)), best]
         # What blocked an ear may have gone since it was judged. Where even a new look finds none, the polygon is
         # straight or crosses itself, and no further look would help.
@@ -203,8 +205,7 @@ class _Ears:
         ax, ay, bx, by, cx, cy = (_at(of, at) for at in (a, b, c) for of in (x, y))
         area = _turn(ax, ay, bx, by, cx, cy)
         sides = [
-            _turn(px, py, qx, qy, x, y)
-            for px, py, qx, qy in ((ax, ay, bx, by), (bx, by, cx, cy), (cx, cy, ax, ay))
+            _turn(px, py, qx, qy, x, y) for px, py, qx, qy in ((ax, ay, bx, by), (bx, by, cx, cy), (cx, cy, ax, ay))
         ]
         inside = [side > flat for side in sides]
         within = self.alive[rows] & np.logical_and.reduce([side >= -flat for side in sides])

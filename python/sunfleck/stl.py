@@ -35,10 +35,7 @@ def read_stl(source: Source) -> Contents:
         The file can't be read.
     """
     data, note = source.read(), Notices(source.path)
-    if _is_text(data):
-        mesh = _read_text(source, with_newlines(data), note)
-    else:
-        mesh = _read_binary(source, data, note)
+    mesh = _read_text(source, with_newlines(data), note) if _is_text(data) else _read_binary(source, data, note)
     return Contents([] if mesh is None else [mesh])
 
 
