@@ -87,7 +87,11 @@ def read_ply(source: Source) -> Contents:
         note(f"{left} behind the last element are left out")
     if vertices is None or not corners:
         return Contents([])
-    return Contents([*_meshes(source, vertices, np.concatenate(corners), np.concatenate(counts), note)])
+    return Contents([*_meshes(source, vertices, _joined(corners), _joined(counts), note)])
+
+
+def _joined(parts: list[NDArray[Any]]) -> NDArray[Any]:
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
 
 def _meshes(

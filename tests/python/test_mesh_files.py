@@ -260,7 +260,8 @@ def ply(
     rows += [("dBff", [x, 9, y, z]) for x, y, z in VERTICES.tolist()]
     letter = {"uchar": "B", "int": "i", "short": "h"}[length]
     for k, face in enumerate(faces):
-        form, values = f"{letter}{len(face)}i", [len(face), *face]
+        form: str = f"{letter}{len(face)}i"
+        values: list[Any] = [len(face), *face]
         if extra:
             form, values = f"f{form}B{k % 3}fh", [0.5, *values, k % 3, *[0.25] * (k % 3), -7]
         rows.append((form, values))
