@@ -187,8 +187,12 @@ static sf_status seed_pcg32(sf_rng *rng, uint64_t seed, sf_error *error) {
     return SF_STATUS_OK;
 }
 
+/* Not the method's own increments from one starting point: the states of such streams differ by a sequence
+ * that depends on the increments alone, so that nearby streams correlate when they are interleaved. State
+ * and increment both come from the hash. */
 static void seed_stream_pcg32(sf_rng *rng, uint64_t seed, uint64_t stream) {
-    rng->as.pcg32 = sf_pcg32_seeded(seed, stream);
+    uint64_t key = sf_hash64(seed, stream);
+    rng->as.pcg32 = sf_pcg32_seeded(sf_hash64(key, 0), sf_hash64(key, 1));
 }
 
 static void skip_pcg32(sf_rng *rng, uint64_t count, const sf_rng_kernels *kernels) {
@@ -203,7 +207,7 @@ static const char *fault_pcg32(const sf_rng *rng) {
 
 const sf_rng_method sf_rng_pcg32 = {
     .name = "pcg32",
-    .description = "O'Neill's PCG-XSH-RR 64/32: small, fast, with 2^63 streams",
+    .description = "O'Neill's PCG-XSH-RR 64/32: small and fast",
     .native_bits = 32,
     .field_bits = 64,
     .field_count = 2,

@@ -85,9 +85,8 @@ static void test_mt19937_streams_are_seeded_by_init_by_array(void **state) {
 static void test_pcg32_draws_the_references_words(void **state) {
     (void)state; /* pcg32-demo of pcg-c-basic, seeded (42, 54) */
     static const uint32_t expected[] = {0xa15c02b7, 0x7b47f409, 0xba1d3330, 0x83d2f293, 0xbfa4784b, 0xcbed606e};
-    sf_rng rng;
-    assert_int_equal(sf_rng_init(&rng, SF_RNG_PCG32, 42, 54, NULL), SF_STATUS_OK);
-    for (int i = 0; i < 6; ++i) assert_int_equal(sf_rng_next_raw(&rng), expected[i]);
+    sf_pcg32 g = sf_pcg32_seeded(42, 54);
+    for (int i = 0; i < 6; ++i) assert_int_equal(sf_pcg32_next(&g), expected[i]);
 }
 
 static void test_sfc64_draws_practrands_words_from_seed_0(void **state) {
@@ -269,7 +268,7 @@ static const struct {
      UINT64_C(0x98d38aaa1220b391),
      0x1.220b3p-4f,
      0x1.220b3931a715p-4,
-     {UINT64_C(0xde861587b52dc5db), UINT64_C(0xda2c6b24cd54db5f)}},
+     {UINT64_C(0xde861587b52dc5db), UINT64_C(0x8100a27a4ef861d8)}},
     {"pcg64dxsm",
      0x928222af,
      UINT64_C(0xf6f6284e928222af),

@@ -64,9 +64,12 @@ def test_minstd_gives_the_standards_ten_thousandth_output() -> None:
 
 
 def test_pcg32_gives_its_authors_demonstration() -> None:
-    # O'Neill's pcg32-demo, seeded (42, 54).
+    # O'Neill's pcg32-demo, seeded (42, 54): the state is (increment + seed) a + increment.
     expected = [0xA15C02B7, 0x7B47F409, 0xBA1D3330, 0x83D2F293, 0xBFA4784B, 0xCBED606E]
-    assert sf.Rng("pcg32", seed=42, stream=54).bits(6).tolist() == expected
+    increment = 2 * 54 + 1
+    state = ((increment + 42) * 6364136223846793005 + increment) % 2**64
+    rng = sf.Rng.from_state({"name": "pcg32", "words": [state, increment, 0, 42, 0, 0]})
+    assert rng.bits(6).tolist() == expected
 
 
 def test_splitmix64_gives_the_published_words() -> None:

@@ -102,8 +102,7 @@ unsigned sf_rng_native_bits(sf_rng_kind kind);
  *   combined                    both states are drawn from SplitMix64 of the seed
  *   mt19937                     init_genrand(seed), below 2^32
  *   mt19937-64                  init_genrand64(seed)
- *   pcg32                       pcg32_srandom_r(seed, stream): every stream is the method's own;
- *                               stream < 2^63
+ *   pcg32                       pcg32_srandom_r(seed, 0)
  *   pcg64dxsm                   cm_setseq_dxsm_128_64(seed, stream): every stream is its own
  *   xoshiro256++                four draws of SplitMix64 of the seed, as its authors ask
  *   sfc64                       a = b = c = seed, counter 1, 12 draws thrown away
@@ -114,8 +113,11 @@ unsigned sf_rng_native_bits(sf_rng_kind kind);
  * Where the method has no streams, stream s > 0 is seeded from sf_hash64(seed, s) reduced to
  * what the method takes (mt19937, mt19937-64: by init_by_array of seed and stream; sfc64: three
  * words drawn from SplitMix64 of that hash, then 12 draws thrown away): distinct streams are then
- * distinct points of one cycle, and overlap with the probability that chance gives. Refuses a
- * seed that the method cannot take, naming its range; with stream > 0 every seed is taken. */
+ * distinct points of one cycle, and overlap with the probability that chance gives. pcg32 has
+ * streams of its own, but those of one seed correlate when they are interleaved: with h =
+ * sf_hash64(seed, s), stream s > 0 is pcg32_srandom_r(sf_hash64(h, 0), sf_hash64(h, 1)), for
+ * s < 2^63. Refuses a seed that the method cannot take, naming its range; with stream > 0 every
+ * seed is taken. */
 sf_status sf_rng_init(sf_rng *rng, sf_rng_kind kind, uint64_t seed, uint64_t stream, sf_error *error);
 
 /* The constants of a general linear congruential generator, lcg32 or lcg64. */
