@@ -30,7 +30,7 @@ help:
 	@echo "make docs      builds the site into build/site/, which needs no network to be read"
 	@echo "make bench     measures speed and accuracy; figures go to standard output"
 	@echo "make bench-peers  measures seconds to a stated error beside Mitsuba, Cycles and LuxCore"
-	@echo "make battery   runs dieharder over every generator; writes the table of docs/generators.md"
+	@echo "make battery   tests every generator's structure and runs dieharder; writes the tables of docs/generators.md"
 	@echo "make gallery   writes docs/gallery.md and its pictures anew"
 	@echo "make clean     removes build/, out/, dist/ and .venv/"
 
@@ -83,9 +83,10 @@ bench-peers: packages-bench .venv/.test $(MITSUBA_PYTHON) build/cycles/bin/pytho
 	$(venv) bench/scaling.py threads
 	$(venv) bench/scaling.py memory
 
-# Some 15 minutes of two processors; build/battery/ keeps what was run.
-battery: packages-demo .venv/.demo
+# Half a minute for the structure, then some 15 minutes of two processors; build/battery/ keeps what was run.
+battery: packages-demo .venv/.test
 	@scripts/install-packages.sh dieharder
+	$(venv) bench/structure.py
 	$(venv) bench/battery.py
 
 gallery: packages-demo .venv/.test
