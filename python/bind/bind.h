@@ -11,10 +11,13 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <mutex>
 
 #include "sunfleck/base.h"
+#include "turn.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -49,12 +52,41 @@ void call(Function &&function) {
     raise_unless_ok(status, error);
 }
 
-// A C struct that threads share, and the lock by which they take turns. The lock is only ever
-// taken without the GIL, so that neither can wait for the other.
-template <class T, class Mutex = std::mutex>
+// Calls work(first, count) for pieces of `total` in order, from a thread without the GIL, until one fails. Between
+// pieces, about twenty times a second, Python's signal handlers run; what they raise (Ctrl-C) ends it. Pieces start
+// at `smallest` and grow while they take less than 10 ms, so that neither short work nor long pays for the asking.
+template <class Work>
+sf_status in_pieces(size_t total, size_t smallest, Work &&work) {
+    using clock = std::chrono::steady_clock;
+    using std::chrono::milliseconds;
+    if (total <= smallest) return work(size_t(0), total);
+    clock::time_point asked = clock::now(), begun = asked;
+    for (size_t done = 0, piece = smallest; done < total;) {
+        size_t count = std::min(piece, total - done);
+        sf_status status = work(done, count);
+        if (status != SF_STATUS_OK) return status;
+        done += count;
+        clock::time_point now = clock::now();
+        if (now - begun < milliseconds(10))
+            piece *= 2;
+        else if (now - begun > milliseconds(30))
+            piece = std::max(smallest, piece / 2);
+        if (now - asked > milliseconds(50)) {
+            nb::gil_scoped_acquire acquired;
+            if (PyErr_CheckSignals()) throw nb::python_error();
+            asked = clock::now();
+        }
+        begun = clock::now();
+    }
+    return SF_STATUS_OK;
+}
+
+// A C struct that threads share, and the lock by which they take turns. No thread waits for the lock while it has the
+// GIL, so that neither can wait for the other. A fork waits until no struct is half changed.
+template <class T>
 struct shared {
     T value;
-    Mutex turn;
+    turn_lock turn;
 
     explicit shared(const T &initial) : value(initial) {}
 
@@ -62,8 +94,31 @@ struct shared {
     template <class Function>
     void use(Function &&function) {
         call([&](sf_error *error) {
-            std::lock_guard<Mutex> lock(turn);
+            std::lock_guard<turn_lock> lock(turn);
+            whole_for_forks whole;
             return function(&value, error);
+        });
+    }
+
+    // Calls function(&value, first, count) for pieces of `total`; the struct is as before where Ctrl-C ended it.
+    template <class Function>
+    void use_in_pieces(size_t total, size_t smallest, Function &&function) {
+        call([&](sf_error *) {
+            std::lock_guard<turn_lock> lock(turn);
+            auto work = [&](size_t first, size_t count) {
+                whole_for_forks whole;
+                function(&value, first, count);
+                return SF_STATUS_OK;
+            };
+            if (total <= smallest) return work(0, total);
+            const T before = value;
+            try {
+                return in_pieces(total, smallest, work);
+            } catch (...) {
+                whole_for_forks whole;
+                value = before;
+                throw;
+            }
         });
     }
 

@@ -85,10 +85,9 @@ nb::class_<shared<T>> bind_zeroed(nb::module_ &m, const char *name) {
 
 template <class T, class X, void (*Add)(T *, size_t, const X *)>
 void add_all(shared<T> &to, flat_array<const X> x) {
-    to.use([&](T *now, sf_error *) {
-        Add(now, x.size(), x.data());
-        return SF_STATUS_OK;
-    });
+    // One sample after another, so that pieces add up to the same bits.
+    to.use_in_pieces(x.size(), size_t(1) << 18,
+                     [&](T *now, size_t first, size_t count) { Add(now, count, x.data() + first); });
 }
 
 template <class T, class Value, Value T::*Field>
@@ -124,9 +123,8 @@ void bind_weighted(nb::module_ &m) {
             "add",
             [](shared<weighted> &self, flat_array<const double> x, flat_array<const double> weights) {
                 if (x.size() != weights.size()) throw nb::value_error("each sample must have a weight");
-                self.use([&](weighted *now, sf_error *) {
-                    sf_weighted_moments_add_f64(now, x.size(), x.data(), weights.data());
-                    return SF_STATUS_OK;
+                self.use_in_pieces(x.size(), size_t(1) << 18, [&](weighted *now, size_t first, size_t count) {
+                    sf_weighted_moments_add_f64(now, count, x.data() + first, weights.data() + first);
                 });
             },
             "x"_a.noconvert(), "weights"_a.noconvert())

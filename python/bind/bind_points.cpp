@@ -5,6 +5,7 @@
 
 #include <nanobind/stl/pair.h>
 #include <pthread.h>
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <string>
@@ -67,18 +68,32 @@ bool worth_keeping(const sf_points_options &options) {
 template <class T>
 using fill_function = sf_status (*)(const sf_point_set *, uint64_t, size_t, T *, sf_error *);
 
+// As many rows as make a quarter of a million values, and whole blocks of the kernels: what Ctrl-C waits for at least.
+size_t smallest_piece(uint32_t dims) { return std::max<size_t>(1024, (size_t(1) << 18) / std::max<uint32_t>(dims, 1)); }
+
+template <class T, fill_function<T> FillFrom>
+sf_status fill_in_pieces(const prepared &ours, uint64_t first, size_t count, T *out, sf_error *error) {
+    size_t dims = ours.options.dims;
+    return in_pieces(count, smallest_piece(ours.options.dims), [&](size_t done, size_t rows) {
+        return FillFrom(ours.set, first + done, rows, out + done * dims, error);
+    });
+}
+
 template <class T, sf_status (*Fill)(const sf_points_options *, size_t, T *, sf_error *), fill_function<T> FillFrom>
-sf_status fill_with_kept(const sf_points_options &options, size_t count, T *out, sf_error *error) {
-    if (!worth_keeping(options)) return Fill(&options, count, out, error);
-    std::unique_ptr<prepared> ours{last_prepared.exchange(nullptr)};
+sf_status fill_with_kept(sf_points_options options, size_t count, T *out, sf_error *error) {
+    bool keep = worth_keeping(options);
+    // As sf_points_fill does: a set that needs its total is whole unless told otherwise.
+    if (!keep && options.total == 0 && options.first <= UINT64_MAX - count) options.total = options.first + count;
+    if (!keep && count <= smallest_piece(options.dims)) return Fill(&options, count, out, error);
+    std::unique_ptr<prepared> ours{keep ? last_prepared.exchange(nullptr) : nullptr};
     if (!ours || !ours->serves(options)) {
         ours = std::make_unique<prepared>();
         ours->options = options;
         sf_status status = sf_point_set_create(&options, &ours->set, error);
         if (status != SF_STATUS_OK) return status;
     }
-    sf_status status = FillFrom(ours->set, options.first, count, out, error);
-    delete last_prepared.exchange(ours.release());
+    sf_status status = fill_in_pieces<T, FillFrom>(*ours, options.first, count, out, error);
+    if (keep) delete last_prepared.exchange(ours.release());
     return status;
 }
 

@@ -24,9 +24,9 @@ struct bitgen {
     uint64_t (*next_raw)(void *);
 };
 
-// The lock may be taken again by the thread that has it: NumPy shuffles lists under it, and what a
-// list's items do may draw.
-struct generator : shared<sf_rng, std::recursive_mutex> {
+// The lock may be taken again by the thread that has it: NumPy shuffles lists under it, and what a list's items do may
+// draw.
+struct generator : shared<sf_rng> {
     bitgen functions;
 
     explicit generator(const sf_rng &rng) : shared(rng) {
@@ -51,16 +51,35 @@ sf_lcg_parameters constants(sf_rng_kind kind, std::optional<uint64_t> a, std::op
 
 template <class T, void (*Fill)(sf_rng *, size_t, T *)>
 void fill(generator &g, flat_array<T> out) {
-    g.use([&](sf_rng *rng, sf_error *) {
-        Fill(rng, out.size(), out.data());
-        return SF_STATUS_OK;
-    });
+    g.use_in_pieces(out.size(), size_t(1) << 18,
+                    [&](sf_rng *rng, size_t first, size_t count) { Fill(rng, count, out.data() + first); });
+}
+
+// NumPy takes the lock around every draw, so that it should cost little where no other thread draws.
+void lock(turn_lock &turn) {
+    if (turn.try_lock()) return;
+    nb::gil_scoped_release released;
+    turn.lock();
 }
 
 }  // namespace
 
 void bind_rng(nb::module_ &m) {
     m.def("rngs", [] { return listed(sf_rng_name, sf_rng_description); });
+
+    nb::class_<turn_lock>(m, "Turn")
+        .def("acquire",
+             [](turn_lock &turn) {
+                 lock(turn);
+                 return true;
+             })
+        .def("release", [](turn_lock &turn) { turn.unlock(); })
+        .def("__enter__",
+             [](turn_lock &turn) {
+                 lock(turn);
+                 return true;
+             })
+        .def("__exit__", [](turn_lock &turn, const nb::args &) { turn.unlock(); });
 
     nb::class_<generator>(m, "Rng")
         .def(
@@ -80,6 +99,7 @@ void bind_rng(nb::module_ &m) {
         .def_prop_ro("name", [](generator &g) { return sf_rng_name(g.value.kind); })
         .def_prop_ro("seed", [](generator &g) { return g.value.seed; })
         .def_prop_ro("stream", [](generator &g) { return g.value.stream; })
+        .def_prop_ro("native_bits", [](generator &g) { return sf_rng_native_bits(g.value.kind); })
         .def("fill", &fill<uint32_t, sf_rng_fill_u32>, "out"_a.noconvert())
         .def("fill", &fill<uint64_t, sf_rng_fill_u64>, "out"_a.noconvert())
         .def("fill", &fill<float, sf_rng_fill_f32>, "out"_a.noconvert())
@@ -138,12 +158,17 @@ void bind_rng(nb::module_ &m) {
                  });
                  return draw;
              })
-        .def("lock",
-             [](generator &g) {
-                 nb::gil_scoped_release released;
-                 g.turn.lock();
+        .def_prop_ro(
+            "turn", [](generator &g) { return &g.turn; }, nb::rv_policy::reference_internal)
+        // Of NumPy's bitgen_t, its state and its next_uint64, next_uint32 and next_double; good as the capsule is.
+        .def("addresses",
+             [](generator &g) -> nb::typed<nb::tuple, size_t, size_t, size_t, size_t, size_t> {
+                 const bitgen &f = g.functions;
+                 return nb::make_tuple(reinterpret_cast<uintptr_t>(&f), reinterpret_cast<uintptr_t>(f.state),
+                                       reinterpret_cast<uintptr_t>(f.next_uint64),
+                                       reinterpret_cast<uintptr_t>(f.next_uint32),
+                                       reinterpret_cast<uintptr_t>(f.next_double));
              })
-        .def("unlock", [](generator &g) { g.turn.unlock(); })
         // The pointer is good for as long as the generator is.
         .def("capsule", [](generator &g) { return nb::capsule(&g.functions, "BitGenerator"); });
 

@@ -26,6 +26,13 @@ void raise_unless_ok(sf_status status, const sf_error &error) {
 }
 
 NB_MODULE(_core, m) {
+    // The GIL is taken and released by PyGILState, which knows the main interpreter alone: a call from another would
+    // wait for ever.
+    if (PyInterpreterState_Get() != PyInterpreterState_Main())
+        throw nb::import_error(
+            "sunfleck works in the main interpreter only, not in a sub-interpreter; "
+            "use threads or processes");
+    watch_forks();
     m.doc() = "The C library, as thin as it can be bound. Private: use the modules of sunfleck.";
     m.def("version", &sf_version);
     m.def("isa", [] { return sf_isa_name(sf_isa_active()); });

@@ -32,8 +32,35 @@ def integer(name: str, value: Any, bits: int = 64) -> int:
     return number
 
 
+def array_of(name: str, value: Any) -> NDArray[Any]:
+    """What was given as an array, of whatever kind: the one way in for every array argument.
+
+    A mask would be lost here without a word, so that masked values are refused.
+    """
+    if type(value) is not np.ndarray:
+        refuse_masked(name, value)
+    try:
+        return np.asarray(value)
+    except ValueError as error:
+        raise ValueError(f"{name} is not a regular array: {error}") from None
+
+
+def refuse_masked(name: str, value: Any) -> None:
+    """Refuses a masked array of which something is masked, and a sequence that holds one."""
+    parts = value if isinstance(value, (list, tuple)) else (value,)
+    for part in parts:
+        if isinstance(part, (list, tuple)):
+            refuse_masked(name, part)
+        elif isinstance(part, np.ma.MaskedArray) and np.ma.is_masked(part):
+            raise ValueError(
+                f"{name} is a masked array, {np.ma.getmaskarray(part).sum()} of its {part.size} values masked; masks are not "
+                f"honoured: give .compressed() or .filled(value)"
+            )
+
+
 def vector(name: str, value: Any) -> Vector:
     """Three real numbers, as floats; what they may be is C's to say."""
+    refuse_masked(name, value)
     try:
         array = np.asarray(value)
     except ValueError:
@@ -101,10 +128,7 @@ def check_size(name: str, shape: tuple[int, ...]) -> None:
 
 def real_array(name: str, value: ArrayLike, dtype: np.dtype[Any] | None) -> NDArray[Any]:
     """Real numbers as float32 or float64: as wanted, else float32 stays and the rest is float64."""
-    try:
-        array = np.asarray(value)
-    except ValueError as error:
-        raise ValueError(f"{name} is not a regular array: {error}") from None
+    array = array_of(name, value)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name} has dtype {array.dtype}; give real numbers")
     if dtype is None:
@@ -118,6 +142,7 @@ def output_array(out: NDArray[Any] | None, shape: tuple[int, ...], dtype: np.dty
         return np.empty(shape, dtype)
     if not isinstance(out, np.ndarray):
         raise TypeError(f"out is {type(out).__name__}; give a NumPy array")
+    refuse_masked("out", out)
     if out.dtype != dtype:
         raise TypeError(f"out has dtype {out.dtype}; it must be {dtype}")
     if out.shape != shape:

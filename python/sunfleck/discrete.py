@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sunfleck import _core
-from sunfleck._arguments import output_array, real_array
+from sunfleck._arguments import array_of, output_array, real_array
 
 __all__ = ["AliasTable", "PiecewiseConstant1D", "PiecewiseConstant2D"]
 
@@ -139,7 +139,7 @@ class AliasTable:
 
 
 def _indices(index: ArrayLike) -> NDArray[np.uint32]:
-    array = np.asarray(index)
+    array = array_of("index", index)
     if array.dtype.kind not in "iu":
         raise TypeError(f"index has dtype {array.dtype}; give integers")
     if array.size and not (array.min() >= 0 and array.max() < 1 << 32):

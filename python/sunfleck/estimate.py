@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from sunfleck import _core
-from sunfleck._arguments import integer, number, one_of
+from sunfleck._arguments import array_of, integer, number, one_of
 
 __all__ = [
     "BatchMeans",
@@ -32,10 +32,7 @@ _Core = TypeVar("_Core", _core.Moments, _core.VectorMoments)
 
 def _samples(x: ArrayLike) -> NDArray[Any]:
     """float32 as it is, other real numbers as float64."""
-    try:
-        array = np.asarray(x)
-    except ValueError as error:
-        raise ValueError(f"the samples are not a regular array: {error}") from None
+    array = array_of("x", x)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"the samples have dtype {array.dtype}; give real numbers")
     return np.require(array, np.float32 if array.dtype == np.float32 else np.float64, ["C", "A"])

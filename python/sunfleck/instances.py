@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sunfleck import _core
-from sunfleck._arguments import Vector
+from sunfleck._arguments import Vector, array_of
 from sunfleck.mesh import Mesh
 
 __all__ = ["Instances"]
@@ -37,10 +37,7 @@ def _meshes(value: Mesh | Iterable[Mesh]) -> tuple[Mesh, ...]:
 
 
 def _reals(name: str, value: Any, shapes: str) -> NDArray[Any]:
-    try:
-        array = np.asarray(value)
-    except ValueError as error:
-        raise ValueError(f"{name} is not a regular array ({error}); give {shapes}") from None
+    array = array_of(name, value)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name} has dtype {array.dtype}; give float32, or other real numbers, which are copied")
     return array

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sunfleck import _core
-from sunfleck._arguments import integer, number, text
+from sunfleck._arguments import array_of, integer, number, text
 from sunfleck.tolerance import Tolerance
 
 __all__ = ["Integral", "IntegralLook", "integrate"]
@@ -74,7 +74,7 @@ class Integral:
 
 def _values(values: Any, count: int) -> NDArray[np.float64]:
     """What the function returned, as the numbers that C takes."""
-    array = np.asarray(values)
+    array = array_of("what f returned", values)
     if array.dtype.kind not in "fiub":
         raise TypeError(f"f returned values of dtype {array.dtype}; it must return real numbers")
     if array.shape != (count,):

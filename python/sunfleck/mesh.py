@@ -12,17 +12,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sunfleck import _core
-from sunfleck._arguments import Vector, vector
+from sunfleck._arguments import Vector, array_of, vector
 from sunfleck.material import Material, default_albedo, material_values
 
 __all__ = ["Mesh"]
 
 
 def _rows_of_three(name: str, value: Any, kinds: str, wanted: str) -> NDArray[Any]:
-    try:
-        array = np.asarray(value)
-    except ValueError as error:
-        raise ValueError(f"{name} is not a regular array ({error}); give shape (n, 3)") from None
+    array = array_of(name, value)
     if array.dtype.kind not in kinds:
         raise TypeError(f"{name} has dtype {array.dtype}; give {wanted}")
     if array.ndim != 2 or array.shape[1] != 3:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sunfleck import _core
-from sunfleck._arguments import flag, integer, number, text
+from sunfleck._arguments import array_of, flag, integer, number, text
 from sunfleck._core import Progress
 from sunfleck._files import FilePath, ending, given_path
 from sunfleck.error import CheckpointError
@@ -394,7 +394,7 @@ def _mask(value: ArrayLike | None) -> NDArray[np.uint8] | None:
     """As bytes, without a copy where it can be."""
     if value is None:
         return None
-    mask = np.asarray(value)
+    mask = array_of("mask", value)
     if mask.dtype not in (np.bool_, np.uint8):
         raise TypeError(f"mask has dtype {mask.dtype}; give bool or uint8")
     if mask.ndim != 2:

@@ -79,9 +79,10 @@ class Rng:
     [16807, 282475249, 1622650073]
     """
 
-    __slots__ = ("_generator",)
+    __slots__ = ("_generator", "_sequence")
 
     _generator: _core.Rng
+    _sequence: Any
 
     def __init__(
         self,
@@ -158,7 +159,8 @@ class Rng:
 
         Notes
         -----
-        Releases the GIL while it fills.
+        Releases the GIL while it fills. Ctrl-C ends a long fill within 0.2 s: the generator is then as it was,
+        and ``out`` is filled in part.
         """
         kind = one_of("dtype", dtype, ("float64", "float32"))
         values = self._filled(shape, kind, out)
@@ -265,6 +267,14 @@ class Rng:
         from sunfleck.bit_generator import BitGenerator  # brings numpy.random, which is not light
 
         return BitGenerator(self)
+
+    def _seed_sequence(self) -> Any:
+        """NumPy's sequence of this seed and stream, the same at each call, so that what it spawns differs."""
+        try:
+            return self._sequence
+        except AttributeError:
+            self._sequence = np.random.SeedSequence((self.seed, self.stream))
+            return self._sequence
 
     @property
     def state(self) -> dict[str, Any]:

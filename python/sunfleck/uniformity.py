@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sunfleck import _core
-from sunfleck._arguments import integer, text
+from sunfleck._arguments import array_of, integer, text
 
 __all__ = [
     "DISCREPANCIES",
@@ -63,10 +63,7 @@ class RadialSpectrum(NamedTuple):
 
 
 def _rows(points: ArrayLike) -> NDArray[np.float64]:
-    try:
-        array = np.asarray(points)
-    except ValueError as error:
-        raise ValueError(f"the points are not a regular array: {error}") from None
+    array = array_of("points", points)
     if array.dtype.kind != "f":
         raise TypeError(f"the points have dtype {array.dtype}; give floating-point numbers")
     if array.ndim != 2:
@@ -396,7 +393,7 @@ def radial_power_spectrum(points: ArrayLike, *, max_frequency: int | None = None
     >>> bool(spectrum.power[0] < 0.1), bool(0.8 < spectrum.power[-8:].mean() < 1.2)
     (True, True)
     """
-    array = np.asarray(points)
+    array = array_of("points", points)
     sets = array if array.ndim == 3 else [points]
     if len(sets) == 0:
         raise ValueError("there are no sets of points; give at least one")

@@ -5,6 +5,9 @@
 
 import copy
 import pickle
+import subprocess
+import sys
+import textwrap
 import threading
 from collections.abc import Callable
 from typing import Any
@@ -13,6 +16,7 @@ import numpy as np
 import pytest
 
 import sunfleck as sf
+from sunfleck.bit_generator import BitGenerator
 
 SEED = 12345
 NUMPY = {"mt19937": "MT19937", "pcg64dxsm": "PCG64DXSM", "sfc64": "SFC64", "philox4x64": "Philox"}
@@ -166,7 +170,131 @@ def test_bad_states_are_refused(value: Any, match: str) -> None:
     assert rng.random() == sf.Rng("pcg64dxsm", seed=SEED).random()
 
 
-@pytest.mark.parametrize("attribute", ["ctypes", "cffi", "seed_seq"])
-def test_what_is_missing_says_so(attribute: str) -> None:
-    with pytest.raises(NotImplementedError):
-        getattr(sf.Rng("sfc64", seed=1).bit_generator, attribute)
+@pytest.mark.parametrize("name", sorted(sf.RNGS))
+def test_ctypes_and_cffi_draw_the_same_words(name: str) -> None:
+    for kind in ("ctypes", "cffi"):
+        if kind == "cffi":
+            pytest.importorskip("cffi")
+        bits, twin = sf.Rng(name, seed=SEED).bit_generator, np.random.Generator(sf.Rng(name, seed=SEED).bit_generator)
+        face = getattr(bits, kind)
+        assert face is getattr(bits, kind)
+        assert face.next_double(face.state) == twin.random()
+        assert face.next_uint32(face.state) == twin.integers(1 << 32, dtype=np.uint32)
+        assert face.next_uint64(face.state) == twin.integers(1 << 64, dtype=np.uint64)
+
+
+def test_numba_draws_through_numpys_generator() -> None:
+    pytest.importorskip("numba")
+    # In a process of its own: a wrong pointer ends it.
+    code = """
+        import numba, numpy as np, sunfleck as sf
+
+        @numba.njit
+        def total(generator, n):
+            s = 0.0
+            for _ in range(n):
+                s += generator.random()
+            return s
+
+        for name in sf.RNGS:
+            rng, twin = sf.Rng(name, seed=12345), sf.Rng(name, seed=12345)
+            s = 0.0
+            for x in twin.random(100).tolist():
+                s += x
+            assert total(np.random.Generator(rng.bit_generator), 100) == s, name
+            assert rng.random() == twin.random(), name
+        print("alike")
+    """
+    command = [sys.executable, "-W", "ignore", "-c", textwrap.dedent(code)]
+    assert subprocess.run(command, capture_output=True, text=True, check=True).stdout == "alike\n"
+
+
+@pytest.mark.parametrize("name", sorted(set(sf.RNGS) - {"ran1", "ran2", "sfc64"}))
+@pytest.mark.parametrize("drawn", [0, 1, 5])
+def test_advance_passes_over_native_draws(name: str, drawn: int) -> None:
+    bits = sf.Rng(name, seed=SEED).bit_generator
+    bits.random_raw(drawn)
+    expected = copy.deepcopy(bits).random_raw(1010)[1001:]
+    assert np.array_equal(bits.advance(1001).random_raw(9), expected)
+
+
+@pytest.mark.parametrize(
+    "name", ["pcg32", "pcg64dxsm", "philox4x32", "philox4x64", "splitmix64", "xorshift64", "minstd", "randu"]
+)
+def test_advance_goes_back_and_round_the_period(name: str) -> None:
+    bits = sf.Rng(name, seed=SEED, stream=2).bit_generator
+    bits.random_raw(3)
+    first = bits.random_raw(50)
+    assert np.array_equal(bits.advance(-50).random_raw(50), first)
+    assert np.array_equal(bits.advance(2**70 + 11).advance(-(2**70) - 61).random_raw(50), first)
+
+
+def test_advance_is_numpys_for_pcg64dxsm() -> None:
+    ours, theirs = BitGenerator("pcg64dxsm", 7), np.random.PCG64DXSM(7)
+    for delta in (1, 2**64 + 3, 2**127 + 99, -5):
+        assert ours.advance(delta).state == theirs.advance(delta).state
+
+
+def test_what_cannot_advance_or_jump_says_so() -> None:
+    for name in ("ran1", "ran2", "sfc64"):
+        with pytest.raises(NotImplementedError, match=name):
+            sf.Rng(name, seed=1).bit_generator.advance(5)
+    for name in ("ran1", "sfc64", "minstd", "lcg64"):
+        with pytest.raises(NotImplementedError, match=name):
+            sf.Rng(name, seed=1).bit_generator.jumped()
+    for wrong in (-1, 2**64):
+        with pytest.raises(ValueError, match="delta"):
+            sf.Rng("mt19937", seed=1).bit_generator.advance(wrong)
+    with pytest.raises(TypeError, match="delta"):
+        sf.Rng("pcg32", seed=1).bit_generator.advance(1.5)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", ["pcg32", "pcg64dxsm", "xoshiro256++", "philox4x32", "mt19937", "combined"])
+def test_jumped_is_a_copy_ahead(name: str) -> None:
+    rng = sf.Rng(name, seed=SEED)
+    before = rng.state
+    once, twice = rng.bit_generator.jumped(), rng.bit_generator.jumped(2)
+    assert rng.state == before
+    assert once.jumped().random_raw() == twice.random_raw()
+    rng.skip(0x9E3779B97F4A7C15)
+    assert once.random_raw() == rng.bit_generator.random_raw()
+
+
+@pytest.mark.parametrize("name", sorted(NUMPY))
+@pytest.mark.parametrize("seed", [0, 5, [1, 2, 3], 2**200 + 1])
+def test_a_name_and_a_seed_are_numpys(name: str, seed: Any) -> None:
+    ours, numpy = BitGenerator(name, seed), getattr(np.random, NUMPY[name])(seed)
+    assert np.array_equal(ours.random_raw(700), numpy.random_raw(700))
+    children = zip(ours.spawn(3), numpy.spawn(3), strict=True)
+    assert all(a.random_raw() == b.random_raw() for a, b in children)
+    assert ours.seed_seq.entropy == seed
+
+
+@pytest.mark.parametrize("name", sorted(sf.RNGS))
+def test_array_seeds_are_taken_by_all(name: str) -> None:
+    words = {BitGenerator(name, seed).random_raw(2).tobytes() for seed in ([1], [1, 2], [2, 1], 1 << 100)}
+    assert len(words) == 4
+    again = BitGenerator(name, np.random.SeedSequence([1, 2])).random_raw(2).tobytes()
+    assert again == BitGenerator(name, [1, 2]).random_raw(2).tobytes()
+    assert BitGenerator(name).random_raw() != BitGenerator(name).random_raw()
+
+
+def test_the_sequence_of_an_rng_spawns_something_new_each_time() -> None:
+    rng = sf.Rng("pcg32", seed=5, stream=2)
+    first, second = (rng.bit_generator.seed_seq.spawn(1)[0] for _ in range(2))
+    assert first.entropy == (5, 2)
+    assert first.spawn_key != second.spawn_key
+
+
+@pytest.mark.parametrize(
+    ("rng", "seed", "error"),
+    [("pcg33", 1, ValueError), ("pcg32", -1, ValueError), ("pcg32", 1.5, TypeError), ("pcg32", "x", TypeError)],
+)
+def test_bad_seeds_are_refused(rng: str, seed: Any, error: type[Exception]) -> None:
+    with pytest.raises(error):
+        BitGenerator(rng, seed)
+
+
+def test_a_seed_beside_an_rng_is_refused() -> None:
+    with pytest.raises(TypeError, match="beside"):
+        BitGenerator(sf.Rng("pcg32", seed=1), 2)
