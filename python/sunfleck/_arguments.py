@@ -53,8 +53,8 @@ def refuse_masked(name: str, value: Any) -> None:
             refuse_masked(name, part)
         elif isinstance(part, np.ma.MaskedArray) and np.ma.is_masked(part):
             raise ValueError(
-                f"{name} is a masked array, {np.ma.getmaskarray(part).sum()} of its {part.size} values masked; masks are not "
-                f"honoured: give .compressed() or .filled(value)"
+                f"{name} is a masked array, {np.ma.getmaskarray(part).sum()} of its {part.size} values masked; masks "
+                f"are not honoured: give .compressed() or .filled(value)"
             )
 
 
