@@ -79,7 +79,10 @@ void bind_rng(nb::module_ &m) {
                  lock(turn);
                  return true;
              })
-        .def("__exit__", [](turn_lock &turn, const nb::args &) { turn.unlock(); });
+        .def(
+            "__exit__",
+            [](turn_lock &turn, const nb::object &, const nb::object &, const nb::object &) { turn.unlock(); },
+            "kind"_a.none(), "error"_a.none(), "traceback"_a.none());
 
     nb::class_<generator>(m, "Rng")
         .def(
