@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-/* A checkpoint is a table of fields: options, round state, and the columns of the pixels. What is
- * in the tables below is written, compared and read; a new field is one more line. */
+/* A checkpoint is a table of fields. The options are in the table below, which is written, compared and
+ * read; the round's state and the columns of the pixels are in checkpoint_fields.c, with what is
+ * allowed in each. A new field is one more line. */
 
 #include "checkpoint.h"
 
@@ -13,17 +14,16 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "aov.h"
+#include "checkpoint_fields.h"
 #include "container.h"
 #include "error.h"
 #include "mask.h"
 #include "render_options.h"
 #include "replacement.h"
-#include "signed_filter.h"
 #include "stopping.h"
 
 #define TEXT_SIZE 96
-#define MAX_ARRAYS 112
+#define MAX_ARRAYS 112 /* in a list */
 
 /* ---- the tables ---- */
 
@@ -79,63 +79,8 @@ static const option_field option_fields[] = {
     OPTION(tile_size, SF_ARRAY_U32, 1, FREE),
     OPTION(roulette, SF_ARRAY_U32, 1, EQUAL),
 };
+
 #define OPTION_COUNT (sizeof option_fields / sizeof *option_fields)
-
-/* A column of structs: of the round state (one row), or of the film's pixels. */
-typedef struct column {
-    const char *name;
-    size_t offset;
-    sf_array_type type;
-    uint32_t width;
-} column;
-
-#define STATE(field, type) {"state." #field, offsetof(sf_round_state, field), type, 1}
-static const column state_columns[] = {
-    STATE(from, SF_ARRAY_U32),           STATE(to, SF_ARRAY_U32),
-    STATE(rounds, SF_ARRAY_U32),         STATE(look, SF_ARRAY_U32),
-    STATE(in_lap, SF_ARRAY_U32),         STATE(target, SF_ARRAY_F64),
-    STATE(level_fixed, SF_ARRAY_U32),    STATE(level, SF_ARRAY_F64),
-    STATE(tolerance, SF_ARRAY_F64),      STATE(seconds, SF_ARRAY_F64),
-    STATE(traced_samples, SF_ARRAY_U64), STATE(second, SF_ARRAY_U32),
-};
-
-#define PIXEL(name, field, type, width) {"pixel." name, offsetof(sf_film_pixel, field), type, width}
-static const column pixel_columns[] = {
-    PIXEL("count", moments.count, SF_ARRAY_U64, 1),
-    PIXEL("mean", moments.mean, SF_ARRAY_F64, 3),
-    PIXEL("m2", moments.m2, SF_ARRAY_F64, 1),
-    PIXEL("nonfinite", moments.nonfinite, SF_ARRAY_U64, 1),
-    /* The rule replicates keeps seven doubles in the same 56 bytes, which these fields cover, and a
-     * second set keeps the first of them. */
-    PIXEL("dyadic.unit", evidence.dyadic.unit, SF_ARRAY_F64, 1),
-    PIXEL("dyadic.pending", evidence.dyadic.pending, SF_ARRAY_F64, 4),
-    PIXEL("dyadic.squares", evidence.dyadic.squares, SF_ARRAY_F32, 4),
-    PIXEL("variance", variance, SF_ARRAY_F32, 1),
-    PIXEL("look", look, SF_ARRAY_U8, 1),
-    PIXEL("doubt", doubt, SF_ARRAY_U8, 1),
-    PIXEL("hits", hits, SF_ARRAY_U32, 1),
-    PIXEL("half_width", half_width, SF_ARRAY_F32, 1),
-    PIXEL("reason", reason, SF_ARRAY_U8, 1),
-};
-
-/* Of the pixels under a goal of the whole picture. */
-#define GOAL(field, type) {"goal." #field, offsetof(sf_goal_note, field), type, 1}
-static const column goal_columns[] = {GOAL(error, SF_ARRAY_F32), GOAL(around, SF_ARRAY_F32), GOAL(taken, SF_ARRAY_U32)};
-
-/* Of the pixels of a filter with negative lobes. */
-#define SIGNED(name, field, type, width) {"signed." name, offsetof(sf_signed_pixel, field), type, width}
-static const column signed_columns[] = {
-    SIGNED("positive.count", positive.count, SF_ARRAY_U64, 1),
-    SIGNED("positive.mean", positive.mean, SF_ARRAY_F64, 3),
-    SIGNED("positive.m2", positive.m2, SF_ARRAY_F64, 1),
-    SIGNED("positive.nonfinite", positive.nonfinite, SF_ARRAY_U64, 1),
-    SIGNED("negative.count", negative.count, SF_ARRAY_U64, 1),
-    SIGNED("negative.mean", negative.mean, SF_ARRAY_F64, 3),
-    SIGNED("negative.m2", negative.m2, SF_ARRAY_F64, 1),
-    SIGNED("negative.nonfinite", negative.nonfinite, SF_ARRAY_U64, 1),
-    SIGNED("blocks", blocks, SF_ARRAY_F64, 1),
-};
-#define COUNT(table) (sizeof(table) / sizeof *(table))
 
 /* ---- arrays of a checkpoint ---- */
 
@@ -151,13 +96,6 @@ static void list_array(array_list *list, const char *name, sf_array_type type, u
 
 static void list_text(array_list *list, const char *name, const char *text) {
     list_array(list, name, SF_ARRAY_TEXT, 1, strlen(text), (void *)text, 1); /* that is only read */
-}
-
-static void list_columns(array_list *list, const column *columns, size_t count, void *rows, uint64_t row_count,
-                         size_t stride) {
-    for (size_t i = 0; i < count; ++i)
-        list_array(list, columns[i].name, columns[i].type, columns[i].width, row_count,
-                   (char *)rows + columns[i].offset, stride);
 }
 
 static size_t option_size(const option_field *field) {
@@ -192,20 +130,9 @@ static void list_identity(array_list *list, sf_film *film) {
 }
 
 /* What the render has come to, for writing and for reading. */
-static void list_progress(array_list *list, sf_checkpoint *c) {
-    sf_film *film = c->film;
-    list_columns(list, state_columns, COUNT(state_columns), &c->state, 1, sizeof c->state);
-    list_array(list, "open", SF_ARRAY_U64, 1, sf_film_cell_count(film), c->open, sizeof *c->open);
-    list_array(list, "decay", SF_ARRAY_F32, 1, sf_stop_pool_count(film), film->decay, sizeof *film->decay);
-    list_array(list, "active", SF_ARRAY_U64, 1, sf_film_cell_count(film), c->active, sizeof *c->active);
-    list_columns(list, pixel_columns, COUNT(pixel_columns), film->pixels, film->stored, sizeof *film->pixels);
-    if (film->aovs && film->aovs->sums_per_pixel)
-        list_array(list, "aov.sums", SF_ARRAY_F64, film->aovs->sums_per_pixel, film->stored, film->aovs->sums,
-                   film->aovs->sums_per_pixel * sizeof *film->aovs->sums);
-    if (c->notes) list_columns(list, goal_columns, COUNT(goal_columns), c->notes, film->stored, sizeof *c->notes);
-    if (film->signed_pixels)
-        list_columns(list, signed_columns, COUNT(signed_columns), film->signed_pixels, film->stored,
-                     sizeof *film->signed_pixels);
+static void list_progress(array_list *list, const sf_checkpoint *c) {
+    for (size_t i = 0; i < sf_checkpoint_field_count(); ++i)
+        if (sf_checkpoint_field(c, i, list->arrays + list->count)) ++list->count;
 }
 
 sf_status sf_checkpoint_save(const sf_checkpoint *checkpoint, const char *path, sf_error *error) {
@@ -250,7 +177,11 @@ static sf_status take_options(const sf_container *file, sf_render_options *optio
         sf_status status = f->name_of ? find_name(file, f, options, error) : sf_container_take(file, &array, error);
         if (status) return status;
     }
-    return SF_STATUS_OK;
+    sf_error problem;
+    sf_status status = sf_render_options_complete(options, &problem);
+    if (!status) return status;
+    return sf_fail(error, SF_STATUS_IO, "checkpoint '%s' holds an option that no render has: %s", file->path,
+                   problem.message);
 }
 
 static sf_status take_u64(const sf_container *file, const char *name, uint64_t *value, sf_error *error) {
@@ -262,25 +193,7 @@ static sf_status take_u32(const sf_container *file, const char *name, uint32_t *
     return sf_container_take(file, &array, error);
 }
 
-static bool is_open(const sf_film *film, const uint64_t *open, uint32_t x, uint32_t y) {
-    uint32_t bit = sf_cell_number(x % SF_CELL_SIZE, y % SF_CELL_SIZE);
-    return open[(size_t)(y / SF_CELL_SIZE) * film->cell_columns + x / SF_CELL_SIZE] >> bit & 1u;
-}
-
-/* Whether every open pixel of a second set is to have a count that there can be. */
-static bool is_planned(const sf_checkpoint *c) {
-    const sf_film *film = c->film;
-    for (uint32_t y = 0; y < film->height; ++y)
-        for (uint32_t x = 0; x < film->width; ++x) {
-            if (!is_open(film, c->open, x, y)) continue;
-            double planned = sf_film_at(film, x, y)->evidence.planned;
-            if (!(planned >= 1 && planned <= SF_MAX_SPP)) return false;
-        }
-    return true;
-}
-
-/* Fills the accumulators and the state. Values that would lead outside an array are refused:
- * whoever wrote the file may have meant ill. */
+/* Fills the accumulators and the state, and refuses what no render writes: the file may be a forged one. */
 static sf_status take_progress(const sf_container *file, sf_checkpoint *c, sf_error *error) {
     size_t cells = sf_film_cell_count(c->film);
     uint64_t *layout = malloc(cells * sizeof *layout); /* the pixels that there are */
@@ -290,15 +203,9 @@ static sf_status take_progress(const sf_container *file, sf_checkpoint *c, sf_er
     sf_status status = SF_STATUS_OK;
     list_progress(&list, c);
     for (size_t i = 0; !status && i < list.count; ++i) status = sf_container_take(file, list.arrays + i, error);
-    bool sound = c->state.from <= c->state.to && c->state.to <= SF_MAX_SPP &&
-                 !(c->state.in_lap && c->state.look <= c->state.from);
-    for (size_t i = 0; i < cells; ++i) sound = sound && !(c->open[i] & ~layout[i]) && !(c->active[i] & ~layout[i]);
-    for (size_t i = 0; i < c->film->stored; ++i) sound = sound && c->film->pixels[i].reason < SF_STOP_REASON_COUNT;
-    sound = sound && c->film->counted > 0 && c->state.second <= (uint32_t)(c->film->options.unbiased != 0);
-    sound = sound && (!c->state.second || is_planned(c));
+    if (!status) status = sf_checkpoint_check(c, layout, file->path, error);
     free(layout);
-    if (status || sound) return status;
-    return sf_fail(error, SF_STATUS_IO, "checkpoint '%s' holds values that no render writes", file->path);
+    return status;
 }
 
 /* ---- matching ---- */
@@ -473,7 +380,7 @@ sf_status sf_checkpoint_restore(sf_checkpoint *c, const char *path, sf_resume *r
 static void mark_unfinished(sf_film *film, const uint64_t *open, bool second) {
     for (uint32_t y = 0; y < film->height; ++y)
         for (uint32_t x = 0; x < film->width; ++x) {
-            if (!is_open(film, open, x, y)) continue;
+            if (!sf_film_is_in(film, open, x, y)) continue;
             sf_film_pixel *pixel = sf_film_at(film, x, y);
             pixel->half_width = second ? sf_film_half_width(pixel, sf_normal_factor(film->options.confidence))
                                        : sf_stop_half_width(film, &film->options, x, y);
@@ -499,13 +406,21 @@ static sf_isa find_isa(const char *name) {
     return SF_ISA_BASELINE;
 }
 
+/* Whether the file has the pixels that its options speak of: before memory is asked for them. */
+static sf_status check_room(const sf_container *file, const sf_render_options *options, sf_error *error) {
+    uint64_t rows, pixels = (uint64_t)(options->crop[2] - options->crop[0]) * (options->crop[3] - options->crop[1]);
+    if (sf_container_find(file, "pixel.count", SF_ARRAY_U64, 1, &rows) && rows >= pixels) return SF_STATUS_OK;
+    return sf_fail(error, SF_STATUS_IO, "checkpoint '%s' has fewer pixels than its crop, which has %" PRIu64,
+                   file->path, pixels);
+}
+
 /* A film with room for what the file holds, and its identity. */
 static sf_status make_film(const sf_container *file, sf_film **film, sf_error *error) {
     sf_render_options options;
     char isa[TEXT_SIZE];
     uint64_t mask;
     sf_status status = take_options(file, &options, error);
-    if (!status) status = sf_render_options_complete(&options, error);
+    if (!status) status = check_room(file, &options, error);
     if (!status) status = take_text(file, "instruction_set", isa, error);
     if (!status) status = take_u64(file, "mask_hash", &mask, error);
     if (!status) status = sf_film_create(&options, mask != 0, film, error);
@@ -518,7 +433,7 @@ static sf_status make_film(const sf_container *file, sf_film **film, sf_error *e
     array_list list = {.count = 0};
     list_mask(&list, *film);
     status = sf_container_take(file, list.arrays, error);
-    sf_mask_count(*film);
+    if (!status) status = sf_checkpoint_check_mask(*film, file->path, error);
     return status;
 }
 

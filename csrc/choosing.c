@@ -86,8 +86,9 @@ static uint64_t choose_beyond(sf_rounds *r, double target) {
  * largest half-widths, `worst` being the largest of all. False: of none. */
 static bool keep_within_samples(sf_rounds *r, uint64_t count, double worst) {
     if (!r->options.samples) return true;
-    uint64_t left = sf_rounds_budget(r) - sf_rounds_samples(r);
+    uint64_t budget = sf_rounds_budget(r), spent = sf_rounds_samples(r), left = budget > spent ? budget - spent : 0;
     uint32_t step = r->look - r->from;
+    if (r->from == 0 && left < count) return false;
     if (r->from == 0 && left / count < step) { /* not even a first look: as far as it goes, together */
         r->look = (uint32_t)(left / count);
         return true;
@@ -130,9 +131,11 @@ static uint32_t least_planned(const sf_rounds *r) {
 
 /* Sets the next lap: its pixels, where it begins and where it looks. False: nothing is left. */
 bool sf_rounds_begin_lap(sf_rounds *r) {
-    bool chosen = !r->options.spp && !sf_has_tolerance(&r->options);
+    bool chosen = !sf_moves_together(&r->options);
     if (chosen && !r->second) {
-        if (!(r->goal ? sf_goal_choose(r) : choose_by_budget(r))) return false;
+        bool any = r->goal ? sf_goal_choose(r) : choose_by_budget(r);
+        if (!any) r->from = r->to; /* no lap has begun */
+        if (!any) return false;
     } else {
         memcpy(r->active, r->open, sf_film_cell_count(r->film) * sizeof *r->active);
         r->from = r->to;

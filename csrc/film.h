@@ -124,6 +124,11 @@ static inline size_t sf_film_index(const sf_film *film, uint32_t x, uint32_t y) 
 static inline sf_film_pixel *sf_film_at(const sf_film *film, uint32_t x, uint32_t y) {
     return film->pixels + sf_film_index(film, x, y);
 }
+/* Whether the pixel (x, y) of the traced region is in a list of cells: bit m of one is its pixel m. */
+static inline bool sf_film_is_in(const sf_film *film, const uint64_t *cells, uint32_t x, uint32_t y) {
+    uint32_t bit = sf_cell_number(x % SF_CELL_SIZE, y % SF_CELL_SIZE);
+    return cells[(size_t)(y / SF_CELL_SIZE) * film->cell_columns + x / SF_CELL_SIZE] >> bit & 1u;
+}
 /* The pixel (x, y) of the crop. */
 static inline sf_film_pixel *sf_film_crop_at(const sf_film *film, uint32_t x, uint32_t y) {
     return sf_film_at(film, x + film->crop_x0 - film->x0, y + film->crop_y0 - film->y0);

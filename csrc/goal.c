@@ -72,7 +72,7 @@ bool sf_goal_is_reached(const sf_goal *goal) { return goal->reached; }
 static uint32_t gain_bin(const sf_goal_note *pixel, float fall) {
     float gain = pixel->around * (1 - 1 / fall) / (float)(pixel->taken ? pixel->taken : 1);
     uint32_t bits;
-    if (!(gain >= 0)) gain = INFINITY;
+    gain = gain > 0 ? gain : gain == 0 ? 0 : INFINITY; /* -0.0 has the bits of a bin beyond the last */
     memcpy(&bits, &gain, sizeof bits);
     return bits >> GAIN_SHIFT;
 }

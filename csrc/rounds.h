@@ -96,12 +96,7 @@ static inline bool sf_rounds_counts(const sf_rounds *r, uint32_t x, uint32_t y) 
     return u < film->crop_width && v < film->crop_height && sf_film_counts(film, u, v);
 }
 
-/* The most samples that a pixel may take. */
-static inline uint32_t sf_rounds_most(const sf_rounds *r) {
-    const sf_render_options *o = &r->options;
-    bool bounded = sf_has_tolerance(o) || o->relmse > 0;
-    return o->spp ? o->start + o->spp : bounded ? o->max_spp : SF_MAX_SPP;
-}
+static inline uint32_t sf_rounds_most(const sf_rounds *r) { return sf_stop_most(&r->options); }
 
 /* The cells of a tile that are in the film: columns x0 .. x1 - 1, rows y0 .. y1 - 1 of it. */
 typedef struct sf_cell_range {

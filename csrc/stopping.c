@@ -22,9 +22,10 @@
 
 /* ---- looks ---- */
 
+/* The largest is SF_MAX_SPP, itself a power of two. */
 static uint32_t power_at_least(uint32_t n) {
     uint32_t power = 1;
-    while (power < n) power *= 2;
+    while (power < n && power < SF_MAX_SPP) power *= 2;
     return power;
 }
 
@@ -272,7 +273,7 @@ float sf_stop_half_width(const sf_film *film, const sf_render_options *o, uint32
         return replicates_half_width(film, pixel, factor);
     if (o->stop != SF_STOP_DYADIC || !pixel->look) return sf_film_half_width(pixel, factor);
     double half_width = factor * sqrt((double)pooled_variance(film, x, y, false));
-    double least = unseen(film, (double)(SF_LANES << pixel->look));
+    double least = unseen(film, (double)((uint64_t)SF_LANES << pixel->look));
     return (float)(half_width > least ? half_width : least);
 }
 

@@ -53,7 +53,17 @@ static inline bool sf_has_tolerance(const sf_render_options *o) {
     return o->relative_tolerance > 0 || o->absolute_tolerance > 0;
 }
 
-/* The least count above n at which the rule looks, whatever the render's own end. */
+/* Whether all open pixels move on together: not where a budget or a goal of the picture chooses them. */
+static inline bool sf_moves_together(const sf_render_options *o) { return o->spp || sf_has_tolerance(o); }
+
+/* The most samples that a pixel may take, those before `start` too. */
+static inline uint32_t sf_stop_most(const sf_render_options *o) {
+    bool bounded = sf_has_tolerance(o) || o->relmse > 0;
+    return o->spp ? o->start + o->spp : bounded ? o->max_spp : SF_MAX_SPP;
+}
+
+/* The least count above n at which the rule looks, whatever the render's own end; SF_MAX_SPP
+ * where there is none above. */
 uint32_t sf_stop_next_look(const sf_render_options *options, uint32_t n);
 
 /* Whether the rule can tell a half-width from n samples of every pixel. */
