@@ -9,6 +9,7 @@ build_packages = build-essential cmake ninja-build python3-dev python3-venv libe
 demo_packages = $(build_packages) assimp-testmodels
 bench_packages = $(demo_packages) libllvm19
 test_packages = $(demo_packages) libcmocka-dev libopenimageio-dev pkg-config chromium chromium-driver
+clang_packages = $(build_packages) libcmocka-dev clang
 
 sources = CMakeLists.txt pyproject.toml $(shell find cmake csrc python -type f -not -name '*.pyc')
 venv = .venv/bin/python
@@ -18,7 +19,7 @@ MITSUBA_PYTHON = build/mitsuba/bin/python
 with_llvm = DRJIT_LIBLLVM_PATH=$$(ls /usr/lib/*/libLLVM.so.19* 2>/dev/null | head -n 1)
 with_mitsuba = $(with_llvm) PYTHONPATH=$$($(venv) -c 'import sysconfig; print(sysconfig.get_path("platlib"))') $(MITSUBA_PYTHON)
 
-.PHONY: help demo test sanitize lint docs bench bench-peers battery gallery clean packages-demo packages-test packages-bench build-c
+.PHONY: help demo test sanitize clang lint docs bench bench-peers battery gallery clean packages-demo packages-test packages-bench packages-clang build-c
 .DELETE_ON_ERROR:
 .NOTPARALLEL: # packages come first; CMake and pip use all processors themselves
 
@@ -26,6 +27,7 @@ help:
 	@echo "make demo      renders pictures to a stated tolerance into out/"
 	@echo "make test      builds everything, runs the C and the Python tests, builds the site"
 	@echo "make sanitize  runs the C tests under AddressSanitizer with UBSan, then ThreadSanitizer"
+	@echo "make clang     builds core and render by clang, warnings as errors, and runs the C tests of core"
 	@echo "make lint      ruff, mypy --strict, warnings as errors, clang-format"
 	@echo "make docs      builds the site into build/site/, which needs no network to be read"
 	@echo "make bench     measures speed and accuracy; figures go to standard output"
@@ -49,6 +51,12 @@ sanitize: packages-test
 	    cmake --build build/$$kind --parallel && \
 	    ctest --test-dir build/$$kind --output-on-failure || exit 1; \
 	done
+
+clang: packages-clang
+	CMAKE_GENERATOR=Ninja cmake -S . -B build/clang -D CMAKE_BUILD_TYPE=Release -D CMAKE_COMPILE_WARNING_AS_ERROR=ON \
+	    -D CMAKE_C_COMPILER=clang -D CMAKE_CXX_COMPILER=clang++ -D SUNFLECK_BUILD_IMAGE=OFF -D SUNFLECK_INSTALL=OFF
+	cmake --build build/clang --parallel
+	ctest --test-dir build/clang --output-on-failure -L core
 
 lint: packages-test .venv/.lint
 	.venv/bin/ruff check .
@@ -100,6 +108,9 @@ packages-demo:
 
 packages-bench:
 	@scripts/install-packages.sh $(bench_packages)
+
+packages-clang:
+	@scripts/install-packages.sh $(clang_packages)
 
 packages-test:
 	@scripts/install-packages.sh $(test_packages)

@@ -38,8 +38,8 @@ sunfleck_pc_path(sunfleck_pc_libdir "${CMAKE_INSTALL_LIBDIR}")
 sunfleck_pc_path(sunfleck_pc_includedir "${CMAKE_INSTALL_INCLUDEDIR}")
 
 function(sunfleck_install_pc component)
-  cmake_parse_arguments(PARSE_ARGV 1 sunfleck_pc "" "DESCRIPTION;REQUIRES;REQUIRES_PRIVATE;LIBS_PRIVATE" "")
-  foreach(field IN ITEMS description requires requires_private libs_private)
+  cmake_parse_arguments(PARSE_ARGV 1 sunfleck_pc "" "DESCRIPTION;REQUIRES;REQUIRES_PRIVATE;LIBS_PRIVATE;CFLAGS" "")
+  foreach(field IN ITEMS description requires requires_private libs_private cflags)
     string(TOUPPER ${field} upper)
     set(sunfleck_pc_${field} "${sunfleck_pc_${upper}}")
   endforeach()
@@ -60,7 +60,7 @@ function(sunfleck_library_flags result target)
 endfunction()
 
 sunfleck_install_pc(core DESCRIPTION "Random numbers, point sets, mappings and error estimates"
-                    LIBS_PRIVATE "${CMAKE_THREAD_LIBS_INIT} -lm")
+                    LIBS_PRIVATE "${CMAKE_THREAD_LIBS_INIT} -lm" CFLAGS " -ffp-contract=off -DSF_CONTRACT_OFF")
 if(SUNFLECK_BUILD_RENDER)
   # Embree has no .pc file of its own.
   sunfleck_library_flags(embree_flags embree)

@@ -18,7 +18,7 @@ SF_INLINE void sf_pixel_box_sample_f64(double s, double t, double out[2]) {
     out[1] = t;
 }
 SF_INLINE double sf_pixel_box_pdf_f64(const double x[2]) {
-    return (x[0] >= 0.0) & (x[0] < 1.0) & (x[1] >= 0.0) & (x[1] < 1.0) ? 1.0 : 0.0;
+    return ((x[0] >= 0.0) & (x[0] < 1.0) & (x[1] >= 0.0) & (x[1] < 1.0)) ? 1.0 : 0.0;
 }
 SF_INLINE void sf_pixel_box_invert_f64(const double x[2], double u[2]) {
     u[0] = sf_unit_clamp_f64(x[0]);
@@ -653,7 +653,7 @@ SF_INLINE double sf_ggx_masking_f64(const double w[3], double alpha_x, double al
 
 SF_INLINE double sf_ggx_masking_shadowing_f64(const double w[3], const double v[3], double alpha_x, double alpha_y) {
     double a = v[2] * sf_ggx_stretch_f64(w, alpha_x, alpha_y), b = w[2] * sf_ggx_stretch_f64(v, alpha_x, alpha_y);
-    return (w[2] > 0.0) & (v[2] > 0.0) ? 2.0 * w[2] * v[2] / (a + b) : 0.0;
+    return ((w[2] > 0.0) & (v[2] > 0.0)) ? 2.0 * w[2] * v[2] / (a + b) : 0.0;
 }
 
 SF_INLINE void sf_ggx_visible_normals_sample_f64(double s, double t, const double w[3], double alpha_x, double alpha_y,
@@ -874,7 +874,7 @@ SF_INLINE void sf_spherical_rectangle_init_f64(sf_spherical_rectangle_f64 *recta
     rectangle->before = sf_strip_share_f64(-x0, y0, y1, height * scale, near);
     rectangle->after = sf_strip_share_f64(x1, y0, y1, height * scale, near);
     double share = sf_rectangle_share_f64(x0, x1, width * scale, y0, y1, height * scale, near);
-    double within = (x0 * x1 < 0.0) & (y0 * y1 < 0.0) ? 0.5 : 0.0;
+    double within = ((x0 * x1 < 0.0) & (y0 * y1 < 0.0)) ? 0.5 : 0.0;
     rectangle->share = near > 0.0 ? share : within;
 }
 

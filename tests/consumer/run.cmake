@@ -24,6 +24,30 @@ run(${CMAKE_COMMAND} --build ${work}/build --config ${config})
 run(${work}/build/sample)
 run(${work}/build/render ${work}/cmake.exr)
 
+# A component that there is not is named where it is asked for.
+file(WRITE ${work}/bogus/CMakeLists.txt "cmake_minimum_required(VERSION 3.20)
+project(bogus LANGUAGES C)
+find_package(sunfleck 0.1 REQUIRED COMPONENTS core bogus)
+")
+execute_process(COMMAND ${CMAKE_COMMAND} -S ${work}/bogus -B ${work}/bogus/build -G ${generator}
+                        -D CMAKE_PREFIX_PATH=${prefix}
+                RESULT_VARIABLE result OUTPUT_QUIET ERROR_VARIABLE said)
+string(REGEX REPLACE "[ \n]+" " " said "${said}")
+if(result EQUAL 0 OR NOT said MATCHES "no component 'bogus' here; this sunfleck was built with: core")
+  message(FATAL_ERROR "a component that is not there: ${result}, ${said}")
+endif()
+
+# As a part of another project, it leaves that one's build type alone.
+file(WRITE ${work}/parent/CMakeLists.txt "cmake_minimum_required(VERSION 3.20)
+project(parent LANGUAGES C)
+set(SUNFLECK_BUILD_RENDER OFF)
+add_subdirectory(\"${source}\" sunfleck)
+if(CMAKE_BUILD_TYPE OR TARGET test_rng)
+  message(FATAL_ERROR \"build type '\${CMAKE_BUILD_TYPE}', or tests, in the parent\")
+endif()
+")
+run(${CMAKE_COMMAND} -S ${work}/parent -B ${work}/parent/build -G ${generator} -D CMAKE_BUILD_TYPE=)
+
 file(STRINGS ${source}/examples/embed.c line REGEX "cc -std=c99 embed.c")
 string(REGEX REPLACE "^.*(cc -std=c99 embed.c.*)$" "\\1" line "${line}")
 file(COPY ${source}/examples/embed.c DESTINATION ${work})

@@ -8,8 +8,18 @@
 #ifndef SUNFLECK_BASE_H
 #define SUNFLECK_BASE_H
 
+#include <float.h>
 #include <stddef.h>
 #include <stdint.h>
+
+/* The bits that the library promises take IEEE arithmetic in the type itself, and words whose low byte comes
+ * first: a build for another machine would not fail, but give other numbers. */
+#if defined(__BYTE_ORDER__) && defined(__ORDER_LITTLE_ENDIAN__) && __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
+#error "Sunfleck does not support big-endian processors: its samples would have other bits there"
+#endif
+#if !defined(FLT_EVAL_METHOD) || (FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16)
+#error "Sunfleck needs floats that are computed as floats (FLT_EVAL_METHOD 0); on i686 compile with -msse2 -mfpmath=sse"
+#endif
 
 #ifdef __cplusplus
 extern "C" {

@@ -17,6 +17,8 @@
 extern "C" {
 #endif
 
+#include "sunfleck/exact_begin.h"
+
 /* ---- alias table: one of n in constant time ---- */
 
 /* Fills the columns of an alias table: column i keeps its own entry below keep[i] and has alias[i]
@@ -97,6 +99,8 @@ sf_status sf_piecewise_invert_fill_f32(const sf_piecewise *piecewise, size_t cou
                                        sf_error *error);
 sf_status sf_piecewise_invert_fill_f64(const sf_piecewise *piecewise, size_t count, const double *x, double *u,
                                        sf_error *error);
+
+#include "sunfleck/exact_end.h"
 
 #ifdef __cplusplus
 }

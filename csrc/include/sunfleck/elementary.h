@@ -5,7 +5,7 @@
  *
  * They are the library's own so that no libm decides a picture: +, -, *, / and integer
  * operations in a fixed order, without branches, so that a loop over them vectorizes and gives
- * the same bits on every instruction-set level (given -ffp-contract=off). Thread-safe.
+ * the same bits on every instruction-set level (see exact_begin.h for the caller's flags). Thread-safe.
  *
  * Angles are in turns, [0,1), as the unit square gives them: the reduction is then exact, where
  * one by pi rounds. float: minimax-like polynomials, interpolated at Chebyshev nodes to less
@@ -25,9 +25,11 @@
 extern "C" {
 #endif
 
+#include "sunfleck/exact_begin.h"
+
 /* Functions that are always inlined, where the compiler can be told so: one call left in a loop keeps
  * the loop from vectorizing, and compilers leave calls once a file has many. */
-#if defined(__GNUC__)
+#if defined(__GNUC__) && !defined(SF_EXACT_BY_CALLS)
 #define SF_INLINE static inline __attribute__((always_inline))
 #else
 #define SF_INLINE static inline
@@ -169,6 +171,8 @@ SF_INLINE float sf_cbrt_rough(float x) {
     memcpy(&x, &bits, 4);
     return x;
 }
+
+#include "sunfleck/exact_end.h"
 
 #ifdef __cplusplus
 }

@@ -33,6 +33,8 @@
 extern "C" {
 #endif
 
+#include "sunfleck/exact_begin.h"
+
 /* ---- scalar moments (Welford) ---- */
 
 typedef struct sf_moments {
@@ -388,6 +390,8 @@ double sf_confidence_sequence_upper(const sf_confidence_sequence *c);
  * Refuses a sample outside [low, high], or not finite; allocates 2 count doubles while it runs. */
 sf_status sf_betting_interval_f64(size_t count, const double *x, double low, double high, double confidence,
                                   double *lower, double *upper, sf_error *error);
+
+#include "sunfleck/exact_end.h"
 
 #ifdef __cplusplus
 }

@@ -21,6 +21,8 @@
 extern "C" {
 #endif
 
+#include "sunfleck/exact_begin.h"
+
 /* v at length one; the pole if it has none. */
 SF_INLINE void sf_unit_direction(const float v[3], float out[3]) {
     float square = sf_dot3(v, v), scale = square > 0.0f ? 1.0f / sqrtf(square) : 0.0f;
@@ -241,7 +243,7 @@ SF_INLINE void sf_spherical_rectangle_init(sf_spherical_rectangle *rectangle, co
     rectangle->before = sf_strip_share(-x0, y0, y1, height * scale, near);
     rectangle->after = sf_strip_share(x1, y0, y1, height * scale, near);
     float share = sf_rectangle_share(x0, x1, width * scale, y0, y1, height * scale, near);
-    float within = (x0 * x1 < 0.0f) & (y0 * y1 < 0.0f) ? 0.5f : 0.0f;
+    float within = ((x0 * x1 < 0.0f) & (y0 * y1 < 0.0f)) ? 0.5f : 0.0f;
     rectangle->share = near > 0.0f ? share : within;
 }
 /* The x at which the turning plane has swept s of the solid angle. */
@@ -298,6 +300,8 @@ SF_INLINE void sf_spherical_rectangle_invert(const float w[3], const float a[3],
     sf_spherical_rectangle_init(&rectangle, a, b, c, origin);
     sf_spherical_rectangle_find(&rectangle, w, u);
 }
+
+#include "sunfleck/exact_end.h"
 
 #ifdef __cplusplus
 }

@@ -13,6 +13,8 @@
 extern "C" {
 #endif
 
+#include "sunfleck/exact_begin.h"
+
 /* ---- power of the cosine: z^exponent about +z, exponent 0 .. 1e6 ---- */
 
 /* log z, z > 0; near the pole from x and y, which have kept the digits. */
@@ -99,7 +101,7 @@ SF_INLINE float sf_ggx_masking(const float w[3], float alpha_x, float alpha_y) {
 /* Masking of w and shadowing of v together, height-correlated (Heitz 2014, eq. 99). */
 SF_INLINE float sf_ggx_masking_shadowing(const float w[3], const float v[3], float alpha_x, float alpha_y) {
     float a = v[2] * sf_ggx_stretch(w, alpha_x, alpha_y), b = w[2] * sf_ggx_stretch(v, alpha_x, alpha_y);
-    return (w[2] > 0.0f) & (v[2] > 0.0f) ? 2.0f * w[2] * v[2] / (a + b) : 0.0f;
+    return ((w[2] > 0.0f) & (v[2] > 0.0f)) ? 2.0f * w[2] * v[2] / (a + b) : 0.0f;
 }
 
 /* A normal among those that are seen from the unit direction w, w_z >= 0. Dupuy & Benyoub 2023,
@@ -138,6 +140,8 @@ SF_INLINE void sf_ggx_visible_normals_invert(const float h[3], const float w[3],
     u[0] = sf_angle_2pi(scale * half[1] - from[1], scale * half[0] - from[0]);
     u[1] = sf_unit_clamp(1.0f - scale * half[2] / (height > 0.0f ? height : 1.0f));
 }
+
+#include "sunfleck/exact_end.h"
 
 #ifdef __cplusplus
 }

@@ -18,6 +18,8 @@
 extern "C" {
 #endif
 
+#include "sunfleck/exact_begin.h"
+
 /* ---- pixel: the centre is (1/2, 1/2), the pixel itself is the unit square ---- */
 
 /* Box: the unit square as it is. pdf per area: 1 inside. */
@@ -27,7 +29,7 @@ SF_INLINE void sf_pixel_box_sample(float s, float t, float out[2]) {
     out[1] = t;
 }
 SF_INLINE float sf_pixel_box_pdf(const float x[2]) {
-    return (x[0] >= 0.0f) & (x[0] < 1.0f) & (x[1] >= 0.0f) & (x[1] < 1.0f) ? 1.0f : 0.0f;
+    return ((x[0] >= 0.0f) & (x[0] < 1.0f) & (x[1] >= 0.0f) & (x[1] < 1.0f)) ? 1.0f : 0.0f;
 }
 SF_INLINE void sf_pixel_box_invert(const float x[2], float u[2]) {
     u[0] = sf_unit_clamp(x[0]);
@@ -321,6 +323,8 @@ SF_INLINE float sf_pixel_lanczos_weight(const float x[2]) {
     float ratio = (lobe[0] + lobe[1] + lobe[2]) / (lobe[0] - lobe[1] + lobe[2]);
     return copysignf(ratio * ratio, sf_lanczos(x[0]) * sf_lanczos(x[1]));
 }
+
+#include "sunfleck/exact_end.h"
 
 #ifdef __cplusplus
 }

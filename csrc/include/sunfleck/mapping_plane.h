@@ -12,6 +12,8 @@
 extern "C" {
 #endif
 
+#include "sunfleck/exact_begin.h"
+
 /* ---- triangle a, b, c in space ---- */
 
 SF_INLINE void sf_cross3(const float a[3], const float b[3], float out[3]) {
@@ -236,6 +238,8 @@ SF_INLINE void sf_regular_polygon_invert(const float x[2], float sides, float u[
     u[0] = sf_unit_clamp((blade + place) / sides);
     u[1] = sf_unit_clamp(radius > 0.0f ? radius * radius : 0.0f);
 }
+
+#include "sunfleck/exact_end.h"
 
 #ifdef __cplusplus
 }

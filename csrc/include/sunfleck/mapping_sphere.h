@@ -12,6 +12,8 @@
 extern "C" {
 #endif
 
+#include "sunfleck/exact_begin.h"
+
 /* The pole is +z; the lecture's is +y: its (x, y, z) are our (x, z, y). Lengths are 1 within
  * 2 ulp. Every pdf is per solid angle; a direction given to pdf or invert has length 1. */
 
@@ -139,6 +141,8 @@ SF_INLINE void sf_frame_to_world(const float tangent[3], const float bitangent[3
                                  const float local[3], float world[3]) {
     for (int k = 0; k < 3; ++k) world[k] = (local[0] * tangent[k] + local[1] * bitangent[k]) + local[2] * normal[k];
 }
+
+#include "sunfleck/exact_end.h"
 
 #ifdef __cplusplus
 }

@@ -19,6 +19,8 @@
 extern "C" {
 #endif
 
+#include "sunfleck/exact_begin.h"
+
 /* What a surface does with the albedo that its mesh has. */
 typedef enum sf_material_kind {
     SF_MATERIAL_DIFFUSE = 0, /* reflects it evenly, on both sides */
@@ -154,6 +156,8 @@ SF_INLINE float sf_rough_dielectric_sample(float s, float t, float choice, const
     float passed = sf_ggx_masking(beyond, alpha, alpha) / (eta * eta);
     return reflects ? sf_ggx_reflection_weight(w, v, alpha) : passed;
 }
+
+#include "sunfleck/exact_end.h"
 
 #ifdef __cplusplus
 }

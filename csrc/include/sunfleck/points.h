@@ -22,6 +22,8 @@
 extern "C" {
 #endif
 
+#include "sunfleck/exact_begin.h"
+
 #define SF_SOBOL_MAX_DIMS 21201u /* Joe & Kuo's table */
 #define SF_HALTON_MAX_DIMS 6542u /* the primes below 2^16; hammersley has one more */
 #define SF_SZ_MAX_DIMS 65536u    /* the nimbers below 2^16 */
@@ -250,6 +252,8 @@ static inline uint32_t sf_owen_hash32(uint32_t reversed, uint32_t seed) {
 static inline uint32_t sf_owen_scramble32(uint32_t word, uint32_t seed) {
     return sf_reverse_bits32(sf_owen_hash32(sf_reverse_bits32(word), seed));
 }
+
+#include "sunfleck/exact_end.h"
 
 #ifdef __cplusplus
 }
