@@ -210,6 +210,10 @@ sf_status sf_rng_set_state(sf_rng *rng, sf_rng_kind kind, const uint64_t *words,
     fresh.seed = extra[1];
     fresh.stream = extra[2];
     fresh.spawned = extra[3];
+    sf_rng again; /* reset will ask for the same */
+    sf_lcg_parameters parameters = is_lcg(kind) ? sf_lcg_get(&fresh) : (sf_lcg_parameters){0, 0, 0};
+    status = init(&again, kind, is_lcg(kind) ? &parameters : NULL, fresh.seed, fresh.stream, error);
+    if (status != SF_STATUS_OK) return status;
     copy_used(rng, &fresh);
     return SF_STATUS_OK;
 }

@@ -308,6 +308,43 @@ static void test_bad_states_are_refused_and_change_nothing(void **state) {
     assert_memory_equal(&rng, &before, sizeof rng);
 }
 
+/* Edges of types, of moduli and of the words that count what was drawn. */
+static void test_words_of_any_value_are_refused_or_are_a_generator(void **state) {
+    (void)state;
+    static const uint64_t edges[] = {0,          1,          2,          4,       5,          31,
+                                     32,         312,        313,        624,     625,        0x7ffffffe,
+                                     0x7fffffff, 0x80000000, 0xffffffff, 1u << 5, UINT64_MAX, UINT64_C(1) << 63};
+    static uint64_t words[SF_RNG_STATE_MAX];
+    static uint32_t out[3000];
+    uint64_t draw = 0, taken = 0, refused = 0;
+    for (int kind = 0; kind < SF_RNG_COUNT; ++kind)
+        for (int k = 0; k < 400; ++k) {
+            sf_rng rng, child;
+            sf_error error;
+            assert_int_equal(sf_rng_init(&rng, (sf_rng_kind)kind, 3, 0, &error), SF_STATUS_OK);
+            sf_rng_get_state(&rng, words);
+            size_t size = sf_rng_state_size((sf_rng_kind)kind);
+            size_t at = k % 2 ? size - 1 - k / 2 % (size < 8 ? size : 8) : sf_hash64(++draw, 1) % size;
+            words[at] = k % 5 ? edges[sf_hash64(++draw, 2) % (sizeof edges / sizeof *edges)] : sf_hash64(++draw, 3);
+            int good = sf_rng_set_state(&rng, (sf_rng_kind)kind, words, size, &error) == SF_STATUS_OK;
+            taken += good;
+            refused += !good;
+            if (!good) continue;
+            for (int i = 0; i < 700; ++i) assert_true(sf_rng_next_f64(&rng) < 1);
+            sf_rng_fill_u32(&rng, 3000, out);
+            (void)sf_rng_skip(&rng, UINT64_MAX - draw, &error);
+            sf_rng_spawn(&rng, 1, &child);
+            sf_rng_reset(&rng); /* asserts that the seed is one it can have */
+            sf_rng_next_u32(&child);
+        }
+    assert_true(taken > 0 && refused > 0);
+    uint64_t even[1 + 4] = {3, 0, 4, 0, 0}; /* a seed that randu refuses, from which reset would begin */
+    sf_rng rng;
+    sf_error error;
+    assert_int_equal(sf_rng_set_state(&rng, SF_RNG_RANDU, even, 5, &error), SF_STATUS_INVALID_VALUE);
+    assert_non_null(strstr(error.message, "seed is 4"));
+}
+
 static void test_streams_and_children_share_no_word(void **state) {
     (void)state;
     /* 16 sequences of 64 words: by chance two of 1024 words of 64 bits are equal once in 2^45. */
@@ -371,6 +408,7 @@ int main(void) {
         cmocka_unit_test(test_minstd_returns_after_its_whole_period),
         cmocka_unit_test(test_state_round_trips_in_the_middle_of_a_draw),
         cmocka_unit_test(test_bad_states_are_refused_and_change_nothing),
+        cmocka_unit_test(test_words_of_any_value_are_refused_or_are_a_generator),
         cmocka_unit_test(test_streams_and_children_share_no_word),
         cmocka_unit_test(test_bad_seeds_and_names_are_refused_by_name_and_range),
         cmocka_unit_test(test_every_name_finds_its_kind),
