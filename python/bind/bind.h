@@ -16,6 +16,7 @@
 #include <chrono>
 #include <mutex>
 
+#include "away.h"
 #include "sunfleck/base.h"
 #include "turn.h"
 
@@ -46,7 +47,7 @@ void call(Function &&function) {
     error.message[0] = '\0';
     sf_status status;
     {
-        nb::gil_scoped_release released;
+        away from_python;
         status = function(&error);
     }
     raise_unless_ok(status, error);

@@ -33,6 +33,7 @@ struct integrand {
 
     // Ctrl-C stops and is spent: what is known so far is the answer to it.
     int call_function(size_t count, uint32_t dims, const double *points, double *values) {
+        if (interpreter_is_leaving()) return 1;
         nb::gil_scoped_acquire acquired;
         try {
             evaluate(count, dims, points, values);

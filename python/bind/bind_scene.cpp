@@ -162,7 +162,7 @@ scene_handle::scene_handle() {
 }
 
 scene_handle::~scene_handle() {
-    nb::gil_scoped_release released;
+    away from_python;
     sf_scene_destroy(scene);
 }
 

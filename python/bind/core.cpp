@@ -36,6 +36,7 @@ NB_MODULE(_core, m) {
     m.doc() = "The C library, as thin as it can be bound. Private: use the modules of sunfleck.";
     m.def("version", &sf_version);
     m.def("isa", [] { return sf_isa_name(sf_isa_active()); });
+    watch_the_exit();
     bind_rng(m);
     bind_points(m);
     bind_mapping(m);
