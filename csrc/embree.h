@@ -8,12 +8,16 @@
 #include <stdbool.h>
 
 #include "platform.h"
+#include "sunfleck/base.h"
 
 #if SF_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
 #else
 #include <embree3/rtcore.h>
 #endif
+
+/* Refuses what Embree could not do, by its error: SF_STATUS_OUT_OF_MEMORY or SF_STATUS_BACKEND. */
+sf_status sf_fail_embree(sf_error *error, int code, const char *format, ...) SF_PRINTF(3, 4);
 
 /* How alike rays are; Embree picks its traversal by it. A stream: those of several packets, as all are of
  * one camera. */

@@ -48,9 +48,7 @@ static sf_status take_meshes(sf_prototype *p, const sf_mesh *meshes, size_t coun
 
 static sf_status attach_meshes(const sf_scene *scene, sf_prototype *p, sf_error *error) {
     p->embree = rtcNewScene(scene->device);
-    if (!p->embree)
-        return sf_fail(error, SF_STATUS_BACKEND, "Embree gave no scene (its error %d)",
-                       (int)rtcGetDeviceError(scene->device));
+    if (!p->embree) return sf_fail_embree(error, (int)rtcGetDeviceError(scene->device), "gave no scene for instances");
     bool far = sf_choose_shift(&p->dark, p->offset);
     for (uint32_t i = 0; i < p->dark_count; ++i) {
         sf_status status = far ? sf_mesh_move(p->meshes + i, p->offset, &p->dark, error) : SF_STATUS_OK;
@@ -174,7 +172,7 @@ static sf_status place_dark(sf_scene *scene, uint32_t number, const float *trans
     rtcAttachGeometryByID(scene->embree, geometry, (unsigned)info->mesh_count);
     rtcReleaseGeometry(geometry);
     int code = (int)rtcGetDeviceError(scene->device);
-    if (code) return sf_fail(error, SF_STATUS_BACKEND, "Embree refused an instance (its error %d)", code);
+    if (code) return sf_fail_embree(error, code, "refused an instance");
     for (uint32_t i = 0; i < p->dark_count; ++i) {
         sf_status status = sf_scene_reserve_mesh(scene, error);
         if (status) return status;

@@ -91,9 +91,7 @@ sf_status sf_instances_build(sf_scene *scene, sf_error *error) {
     }
     int code = (int)rtcGetDeviceError(scene->device);
     if (code == RTC_ERROR_NONE) return SF_STATUS_OK;
-    if (code == RTC_ERROR_OUT_OF_MEMORY)
-        return sf_fail(error, SF_STATUS_OUT_OF_MEMORY, "out of memory: Embree's hierarchies of instances");
-    return sf_fail(error, SF_STATUS_BACKEND, "Embree could not build the instances (its error %d)", code);
+    return sf_fail_embree(error, code, "could not build the instances");
 }
 
 /* ---- how far hits are moved off ---- */

@@ -39,7 +39,7 @@ sf_status sf_scene_create(sf_scene **out, sf_error *error) {
     if (!scene->embree) {
         int code = (int)rtcGetDeviceError(scene->device);
         sf_scene_destroy(scene);
-        return sf_fail(error, SF_STATUS_BACKEND, "Embree gave no device or scene (its error %d)", code);
+        return sf_fail_embree(error, code, "gave no device or scene");
     }
     *out = scene;
     return SF_STATUS_OK;
@@ -210,8 +210,7 @@ sf_status sf_scene_attach_mesh(RTCDevice device, RTCScene embree, const sf_mesh 
     rtcReleaseGeometry(geometry);
     int code = (int)rtcGetDeviceError(device);
     if (code == RTC_ERROR_NONE) return SF_STATUS_OK;
-    if (code == RTC_ERROR_OUT_OF_MEMORY) return sf_fail_memory(error, "a mesh in Embree", 12 * mesh->triangle_count);
-    return sf_fail(error, SF_STATUS_BACKEND, "Embree refused mesh %u (its error %d)", number, code);
+    return sf_fail_embree(error, code, "refused mesh %u of %zu triangles", number, mesh->triangle_count);
 }
 
 void *sf_scene_grow(void *list, size_t *capacity, size_t count, size_t bytes, const char *what, sf_error *error) {
@@ -447,11 +446,9 @@ sf_status sf_scene_commit(sf_scene *scene, sf_error *error) {
     if (status) return status;
     rtcCommitScene(scene->embree);
     int code = (int)rtcGetDeviceError(scene->device);
-    if (code == RTC_ERROR_OUT_OF_MEMORY)
-        return sf_fail(error, SF_STATUS_OUT_OF_MEMORY, "out of memory: Embree's hierarchy over %zu triangles",
-                       scene->info.triangle_count);
     if (code != RTC_ERROR_NONE)
-        return sf_fail(error, SF_STATUS_BACKEND, "Embree could not build the scene (its error %d)", code);
+        return sf_fail_embree(error, code, "could not build the hierarchy over %zu triangles",
+                              scene->info.triangle_count);
     sf_scene_info *info = &scene->info;
     info->light_count = scene->lights.count;
     info->rectangle_light_count = scene->lights.rectangle_count;

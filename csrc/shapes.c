@@ -54,7 +54,7 @@ static sf_status attach_round(sf_scene *scene, const sf_round *round, uint32_t n
     rtcReleaseGeometry(geometry);
     int code = (int)rtcGetDeviceError(scene->device);
     if (code == RTC_ERROR_NONE) return SF_STATUS_OK;
-    return sf_fail(error, SF_STATUS_BACKEND, "Embree refused shape %u (its error %d)", number, code);
+    return sf_fail_embree(error, code, "refused shape %u", number);
 }
 
 /* Takes its bounds and values into the scene's. */

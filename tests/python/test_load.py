@@ -196,3 +196,18 @@ def test_the_whole_folder_of_models_loads_and_renders_or_is_refused() -> None:
     assert loaded >= 55
     assert refused >= 500
     assert time.monotonic() - start < 50
+
+
+@pytest.mark.parametrize("kind", [sf.Error, MemoryError])
+def test_what_embree_refuses_is_not_the_file_s_fault(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: type[Exception]
+) -> None:
+    path = tmp_path / "triangle.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+
+    def refuse(*_: object) -> None:
+        raise kind("Embree could not")
+
+    monkeypatch.setattr("sunfleck._core.check_mesh", refuse)
+    with pytest.raises(kind, match=r"^Embree could not$"):
+        sf.load(path)
