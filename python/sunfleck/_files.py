@@ -67,7 +67,7 @@ def replacing(path: FilePath, what: str, endings: Sequence[str]) -> Iterator[Pat
     Raises
     ------
     TypeError, ValueError, OSError
-        As `writable_target`.
+        As `writable_target`; and where a write fails, as on a full disk, with the path and the reason.
     """
     target = writable_target(path, what, endings)
     beside = target.with_name(f".sunfleck-{secrets.token_hex(8)}{ending(path)}")
@@ -77,6 +77,18 @@ def replacing(path: FilePath, what: str, endings: Sequence[str]) -> Iterator[Pat
         with open(beside, "rb") as written:
             os.fsync(written.fileno())  # a full disk shows here, not after the old file has gone
         os.replace(beside, target)
+    except OSError as error:
+        beside.unlink(missing_ok=True)
+        if "can't write" in str(error):
+            raise
+        raise _named(error, path) from error
     except BaseException:
         beside.unlink(missing_ok=True)
         raise
+
+
+def _named(error: OSError, path: FilePath) -> OSError:
+    """The same error of a write, which says what could not be written."""
+    named = type(error)(f"can't write {os.fspath(path)!r}: {error.strerror or error}")
+    named.errno = error.errno
+    return named

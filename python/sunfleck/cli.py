@@ -6,11 +6,13 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
+import errno
 import logging
 import os
 import sys
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
@@ -272,6 +274,13 @@ def _rendered(given: argparse.Namespace) -> sf.Image:
     )
 
 
+class _Writer:
+    """A file by its function alone, so that NumPy writes through it, and not by itself."""
+
+    def __init__(self, write: Callable[[bytes], int]) -> None:
+        self.write = write
+
+
 def _write_points(points: NDArray[np.float32], output: str) -> None:
     """As text where the ending is not .npy; nine digits tell every float apart."""
     if output == "-":
@@ -279,7 +288,8 @@ def _write_points(points: NDArray[np.float32], output: str) -> None:
         return
     with replacing(output, "points", POINT_TYPES) as path:
         if path.suffix == ".npy":
-            np.save(path, points)
+            with open(path, "wb") as file:  # NumPy's own writing does not tell why it fails
+                np.save(_Writer(file.write), points)
         else:
             np.savetxt(path, points, fmt="%.9g", delimiter="," if path.suffix == ".csv" else " ")
 
@@ -315,6 +325,17 @@ def _split_crop(arguments: Sequence[str]) -> list[str]:
     return words
 
 
+def _told(error: OSError) -> str:
+    """The error as text. One that names no file is of standard output, which is then given up."""
+    if error.errno not in (errno.ENOSPC, errno.EFBIG, errno.EDQUOT, errno.EIO, errno.EBADF) or error.filename:
+        return str(error)
+    if "can't write" in str(error):
+        return str(error)
+    with contextlib.suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # else the interpreter tries once more
+    return f"can't write standard output: {error.strerror}"
+
+
 def _run(arguments: Sequence[str]) -> int:
     """The exit code; what goes wrong becomes one line on standard error."""
     try:
@@ -325,13 +346,16 @@ def _run(arguments: Sequence[str]) -> int:
     except BrokenPipeError:  # the reader of our output has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
+    except OSError as error:
+        print(f"sunfleck: error: {' '.join(_told(error).split())}", file=sys.stderr)
+        return 2
     except KeyboardInterrupt:
         print("sunfleck: interrupted", file=sys.stderr)
         return INTERRUPTED
     except MemoryError as error:
         print(f"sunfleck: error: out of memory {error}".rstrip(), file=sys.stderr)
         return 2
-    except (argparse.ArgumentTypeError, ValueError, TypeError, OSError, NotImplementedError, sf.Error) as error:
+    except (argparse.ArgumentTypeError, ValueError, TypeError, NotImplementedError, sf.Error) as error:
         print(f"sunfleck: error: {' '.join(str(error).split())}", file=sys.stderr)
         return 2
 

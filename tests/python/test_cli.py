@@ -159,6 +159,44 @@ def test_points_warn_once_in_one_line() -> None:
     assert result.stderr.count("\n") == 1
 
 
+FULL_DISK = """
+    import resource, signal, sys
+    from sunfleck.cli import main
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192))
+    sys.exit(main(sys.argv[1:]))
+"""
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["points", "random", "-n", "20000", "-o", "p.npy"],
+        ["points", "random", "-n", "20000", "-o", "p.csv"],
+        ["points", "random", "-n", "20000", "-o", "p.txt"],
+        ["chart", "mappings", "sphere", "--quick", "-o", "chart.html"],
+        ["lab", "randu-planes", "-o", "randu.png"],
+    ],
+)
+def test_a_disk_without_room_is_told_with_the_file_s_name(tmp_path: Path, words: list[str]) -> None:
+    target = tmp_path / words[-1]
+    target.write_bytes(b"old")
+    command = [sys.executable, "-c", textwrap.dedent(FULL_DISK), *words]
+    result = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False, cwd=tmp_path)
+    assert result.returncode == 2
+    assert f"error: can't write '{words[-1]}': File too large" in result.stderr
+    assert result.stderr.count("\n") == 1
+    assert target.read_bytes() == b"old"
+    assert not list(tmp_path.glob(".sunfleck-*"))
+
+
+def test_standard_output_without_room_is_told() -> None:
+    command = f"{sys.executable} -m sunfleck points random -n 20000 > /dev/full"
+    result = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=False)
+    assert result.returncode == 2
+    assert result.stderr == "sunfleck: error: can't write standard output: No space left on device\n"
+
+
 def test_a_reader_that_goes_away_is_no_error() -> None:
     command = f"{sys.executable} -m sunfleck points random -n 200000 | head -n 1"
     result = subprocess.run(["bash", "-c", f"set -o pipefail; {command}"], capture_output=True, text=True, check=False)
