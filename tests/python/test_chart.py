@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 import sunfleck as sf
-from sunfleck.chart.cells import Cell, Store, measure_cells
+from sunfleck.chart.cells import Cell, Store, disturbance, least_time, measure_cells
 from sunfleck.chart.fit import fit_slope, log_allowance, pareto_front, theory_of, winners
 from sunfleck.chart.generator_chart import FAILED, TESTS, linear_complexity
 from sunfleck.chart.pattern_chart import VARIANTS, method_named
@@ -222,6 +222,24 @@ def test_a_chart_that_is_drawn_again_measures_nothing(tmp_path: Path) -> None:
     again = sf.chart("patterns", "random,sobol", **options)  # type: ignore[operator]
     assert again.rows == first.rows  # seconds too
     assert again.text == first.text
+
+
+def test_of_timings_the_least_is_drawn_and_a_busy_machine_is_told() -> None:
+    cells = [Cell(("case", "method", float(n)), lambda seed: {}, 1.0) for n in (16, 32, 64)]
+    quiet, busy = Store(), Store()
+    for cell in cells:
+        for k in range(8):
+            quiet.add(cell.key, {"error": 2.0**-k, "seconds": cell.key[2] * (1 + 0.01 * k)})
+            busy.add(
+                cell.key, {"error": 2.0**-k, "seconds": cell.key[2] * (1 if k == 5 else 2 + (k + cell.key[2]) % 7)}
+            )
+    assert disturbance(cells, 8, quiet) == ""
+    assert "the machine was not quiet: a point's median timing is " in disturbance(cells, 8, busy)
+    for store in (quiet, busy):
+        seconds = [least_time((store.get(cell.key, 8) or {})["seconds"]) for cell in cells]
+        assert seconds == [16, 32, 64]  # not backwards, however busy it was
+    assert math.isnan(least_time([math.nan]))
+    assert least_time([math.nan, 3, 2]) == 2
 
 
 def test_errors_do_not_depend_on_the_run() -> None:

@@ -12,12 +12,14 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from sunfleck import _core
 from sunfleck._files import FilePath, ending, given_path, replacing, writable_target
 from sunfleck.error import Error
 from sunfleck.provenance import compiler, processor
 
-__all__ = ["Cell", "Key", "Store", "measure_cells"]
+__all__ = ["TIMINGS", "Cell", "Key", "Store", "disturbance", "least_time", "measure_cells"]
 
 Key = tuple[str, str, float]
 """Case, method, and how many samples, or another number that says how much."""
@@ -117,6 +119,33 @@ class Store:
                 target.write_text(json.dumps({**self._head, "dates": self.dates, "cells": self._cells}))
         now = time.monotonic()
         self._write_at = now + max(_WRITE_SECONDS, (now - start) / _WRITE_SHARE)
+
+
+TIMINGS = ("seconds", "float64", "uint64", "float32", "sample", "pdf", "invert")
+"""The numbers of cells that are times: what else a machine does adds to them, and never takes away."""
+
+_QUIET_SPREAD = 1.5  # of a point's median timing over its least: half as much again is said
+
+
+def least_time(values: Sequence[float]) -> float:
+    """Of several timings of one thing the least, which was disturbed least; NaN where there is none."""
+    known = [value for value in values if np.isfinite(value)]
+    return min(known) if known else float("nan")
+
+
+def disturbance(cells: Sequence[Cell], seeds: int, store: Store) -> str:
+    """What a chart says where the machine was not quiet: "" where it was.
+
+    By the numbers themselves: half of the points have a median timing that is so much above their least.
+    """
+    spreads = []
+    for cell in cells:
+        for name, values in (store.get(cell.key, seeds) or {}).items():
+            if name in TIMINGS and len(values) > 2 and least_time(values) > 0:
+                spreads.append(float(np.nanmedian(values)) / least_time(values))
+    if not spreads or (typical := float(np.median(spreads))) < _QUIET_SPREAD:
+        return ""
+    return f"the machine was not quiet: a point's median timing is {typical:.1f} times its least, which is drawn"
 
 
 def numbers_beside(path: FilePath) -> str:

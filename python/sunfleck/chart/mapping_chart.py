@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sunfleck import mapping
-from sunfleck.chart.cells import Cell, Store
+from sunfleck.chart.cells import TIMINGS, Cell, Store, least_time
 from sunfleck.figure import Panel, Series
 from sunfleck.points import points
 
@@ -123,7 +123,9 @@ def mapping_cells(names: Sequence[str]) -> list[Cell]:
 
 def _middle(store: Store, key: tuple[str, str, float], seeds: int, what: str) -> float:
     numbers = store.get(key, seeds)
-    return float(np.median(numbers[what])) if numbers else float("nan")
+    if not numbers:
+        return float("nan")
+    return least_time(numbers[what]) if what in TIMINGS else float(np.median(numbers[what]))
 
 
 def mapping_panels(names: Sequence[str], seeds: int, store: Store) -> tuple[list[Panel], str]:

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sunfleck.chart.cells import Cell, Key, Store
+from sunfleck.chart.cells import Cell, Key, Store, least_time
 from sunfleck.chart.fit import FLOOR, Fit, fit_slope, log_allowance, pareto_front, theory_of, winners
 from sunfleck.chart.pixels import RENDER_PATTERNS, Pixels
 from sunfleck.figure import Panel, Series
@@ -153,7 +153,7 @@ def _curves(case: str, methods: Sequence[Method], keys: Sequence[Key], seeds: in
         if cells:
             counts, numbers = zip(*cells, strict=True)
             errors = [np.abs(cell["error"]) for cell in numbers]
-            seconds = [float(np.median(cell["seconds"])) for cell in numbers]
+            seconds = [least_time(cell["seconds"]) for cell in numbers]
             found.append(_Curve(method, list(counts), errors, seconds))
     return found
 

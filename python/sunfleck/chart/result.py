@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from sunfleck._files import FilePath, ending, replacing
-from sunfleck.chart.cells import Cell, Store, measure_cells
+from sunfleck.chart.cells import Cell, Store, disturbance, measure_cells
 from sunfleck.figure import FIGURE_TYPES, Panel, draw_panels, png, save
 from sunfleck.page import PAGE_TYPES, Page
 from sunfleck.provenance import provenance
@@ -143,6 +143,8 @@ def measured(
     complete = measure_cells(cells, seeds, store, progress)
     panels, text = draw()
     about = provenance(range(1, seeds + 1), store.dates)
+    if noise := disturbance(cells, seeds, store):
+        about = f"{noise}; {about}"
     if not complete:
         known = sum(store.seeds(cell.key) > 0 for cell in cells)
         about = f"interrupted: {known} of {len(cells)} cells begun; {about}"

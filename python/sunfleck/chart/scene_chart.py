@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sunfleck.chart.cells import Cell, Key, Store
+from sunfleck.chart.cells import Cell, Key, Store, least_time
 from sunfleck.chart.fit import pareto_front, winners
 from sunfleck.chart.pixels import Pixels, level_of, relative_mse
 from sunfleck.estimate import normal_quantile
@@ -46,14 +46,14 @@ def _mean(values: Any) -> float:
 
 def _adaptive(pixels: Pixels, run: _Run, seed: int) -> dict[str, float]:
     truth, level = pixels.truth, float(pixels.truth.mean())
-    image = pixels.render(
+    image, seconds = pixels.timed(
         tolerance=run.tolerance, confidence=_CONFIDENCE, pattern=run.pattern, stop=run.rule, seed=seed
     )
     miss = np.abs(level_of(image.color) - level_of(truth))
     met = image.stop_reason == _MET
     hard = met & (image.samples > image.samples.min())
     covered = miss <= image.half_width
-    return {"seconds": image.summary().seconds, "relmse": relative_mse(image.color, truth),
+    return {"seconds": seconds, "relmse": relative_mse(image.color, truth),
             "error": _mean(miss[met] ** 2) ** 0.5 / level, "coverage": _mean(covered[met]),
             "hard_coverage": _mean(covered[hard]), "within": _mean(miss[met] <= image.summary().tolerance),
             "met": _mean(met), "samples": _mean(image.samples)}  # fmt: skip
@@ -81,15 +81,17 @@ def scene_cells(
 
 
 def _middle(store: Store, key: Key, seeds: int, name: str) -> float:
-    """Medians of seconds and errors, means of shares and counts; NaN where nothing is known."""
+    """The least of seconds, medians of errors, means of shares and counts; NaN where nothing is known."""
     numbers = store.get(key, seeds)
     if not numbers or not np.isfinite(numbers[name]).any():
         return float("nan")
-    return float((np.nanmedian if name in ("seconds", "relmse", "error") else np.nanmean)(numbers[name]))
+    if name == "seconds":
+        return least_time(numbers[name])
+    return float((np.nanmedian if name in ("relmse", "error") else np.nanmean)(numbers[name]))
 
 
 def _series(method: str, keys: Sequence[Key], seeds: int, store: Store, x: str | None, y: str) -> Series | None:
-    """The method's medians of y over those of x, or over the key's own number; None where there are none."""
+    """The method's y over its x, as `_middle` has them, or over the key's own number; None where there are none."""
     shown = sorted(key for key in keys if key[1] == method)
     rows = [(_middle(store, k, seeds, x) if x else k[2], _middle(store, k, seeds, y)) for k in shown]
     kept = [row for row in rows if np.isfinite(row).all()]
