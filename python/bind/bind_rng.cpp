@@ -58,7 +58,7 @@ void fill(generator &g, flat_array<T> out) {
 // NumPy takes the lock around every draw, so that it should cost little where no other thread draws.
 void lock(turn_lock &turn) {
     if (turn.try_lock()) return;
-    nb::gil_scoped_release released;
+    away from_python;
     turn.lock();
 }
 
@@ -161,7 +161,6 @@ void bind_rng(nb::module_ &m) {
                  });
                  return draw;
              })
-<<<<<<< HEAD
         .def_prop_ro(
             "turn", [](generator &g) { return &g.turn; }, nb::rv_policy::reference_internal)
         // Of NumPy's bitgen_t, its state and its next_uint64, next_uint32 and next_double; good as the capsule is.
@@ -172,12 +171,6 @@ void bind_rng(nb::module_ &m) {
                                        reinterpret_cast<uintptr_t>(f.next_uint64),
                                        reinterpret_cast<uintptr_t>(f.next_uint32),
                                        reinterpret_cast<uintptr_t>(f.next_double));
-=======
-        .def("lock",
-             [](generator &g) {
-                 away from_python;
-                 g.turn.lock();
->>>>>>> 43ec4d7 (bind: daemon threads in the library no longer abort the exit)
              })
         // The pointer is good for as long as the generator is.
         .def("capsule", [](generator &g) { return nb::capsule(&g.functions, "BitGenerator"); });

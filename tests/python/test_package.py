@@ -5,6 +5,7 @@
 
 import doctest
 import importlib
+import importlib.metadata
 import pkgutil
 import subprocess
 import sys
@@ -62,3 +63,18 @@ def test_importing_brings_nothing_heavy() -> None:
     heavy = ("OpenImageIO", "tqdm", "scipy", "matplotlib", "plotly")
     script = f"import sys, sunfleck; print([m for m in {heavy} if m in sys.modules])"
     assert subprocess.check_output([sys.executable, "-c", script], text=True) == "[]\n"
+
+
+def test_the_licences_of_what_the_wheel_contains_come_with_it() -> None:
+    texts = {
+        Path(str(file)).name: file.read_text()
+        for file in importlib.metadata.files("sunfleck") or ()
+        if "licenses" in file.parts
+    }
+    assert {"LICENSE", "NOTICE", "nanobind.txt", "robin-map.txt"} <= set(texts)
+    assert "Wenzel Jakob" in texts["nanobind.txt"]
+    assert "Redistributions in binary form" in texts["nanobind.txt"]
+    assert "Thibaut Goetghebuer-Planchon" in texts["robin-map.txt"]
+    assert "copies or substantial" in texts["robin-map.txt"]
+    assert "nanobind" in texts["NOTICE"]
+    assert "robin_map" in texts["NOTICE"]
