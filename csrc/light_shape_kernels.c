@@ -165,7 +165,7 @@ static inline void end_on_plane(const shape_lanes *SF_RESTRICT lanes, drawn_lane
     }
     float lift = lift_of(end, distance, lanes->field[SF_LIGHT_LIFT][l]);
     for (int c = 0; c < 3; ++c) d->to[c][l] = distance * w[c] + lift * lanes->field[SF_LIGHT_NORMAL_X + c][l];
-    d->density[l] = (height > 0) & (along > 0) & (share > 0) ? 0.25f / (SF_PI_F * share) : 0.0f;
+    d->density[l] = ((height > 0) & (along > 0) & (share > 0)) ? 0.25f / (SF_PI_F * share) : 0.0f;
 }
 
 static inline void corners_of(const shape_lanes *SF_RESTRICT lanes, size_t l, float a[3], float b[3], float c[3]) {
