@@ -235,6 +235,7 @@ static bool note_is_sound(const sf_checkpoint *c, size_t i) {
 
 static bool pixels_are_sound(const sf_checkpoint *c) {
     const sf_film *film = c->film;
+    if (film->part_count > 1) return true; /* merged: counts of several renders, and none goes on from it */
     uint64_t traced = 0, most = sf_stop_most(&film->options) - film->options.start;
     for (size_t i = 0; i < film->stored; ++i) {
         const sf_film_pixel *p = film->pixels + i;

@@ -3,6 +3,7 @@
 
 #include <nanobind/stl/pair.h>
 
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -55,6 +56,34 @@ nb::class_<shared<T>> bind_kind(nb::module_ &m, const char *name) {
         .def_prop_ro("nonfinite", [](shared<T> &s) { return s.copy().nonfinite; });
 }
 
+// Whether a state that is read back is one that samples lead to.
+bool is_squares(double m2) { return !(m2 < 0); }
+bool is_sound(const sf_moments &m) { return is_squares(m.m2); }
+bool is_sound(const sf_vector_moments &m) { return is_squares(m.m2); }
+bool is_sound(const sf_channel_moments &m) { return is_squares(m.m2[0]) && is_squares(m.m2[1]) && is_squares(m.m2[2]); }
+bool is_sound(const sf_weighted_moments &m) {
+    return is_squares(m.m2) && is_squares(m.weight) && is_squares(m.weight_square);
+}
+bool is_sound(const sf_running_sums &) { return true; }  // sums of anything
+bool is_sound(const sf_running_sums_f32 &) { return true; }
+bool is_sound(const sf_batch_means &b) {
+    return b.size > 0 && b.batch.count < b.size && is_sound(b.batch) && is_sound(b.means);
+}
+bool is_sound(const sf_confidence_sequence &c) {
+    return std::isfinite(c.low) && std::isfinite(c.high) && c.low < c.high && c.confidence > 0 && c.confidence < 1 &&
+           c.target >= 0 && std::isfinite(c.target) && is_squares(c.square) && c.bets >= 0 && c.penalty >= 0 &&
+           c.log_factor > 0;
+}
+
+template <class T>
+void set_checked(shared<T> &to, const T &state) {
+    if (!is_sound(state)) throw nb::value_error("the state holds values that no samples lead to");
+    to.use([&](T *now, sf_error *) {
+        *now = state;
+        return SF_STATUS_OK;
+    });
+}
+
 // The further kinds keep their state as the struct's bytes, for copies and pickles of the same build.
 template <class T>
 nb::class_<shared<T>> bind_state(nb::module_ &m, const char *name) {
@@ -70,10 +99,7 @@ nb::class_<shared<T>> bind_state(nb::module_ &m, const char *name) {
                 if (state.size() != sizeof(T)) throw nb::value_error("the state is another version's");
                 T then;
                 std::memcpy(&then, state.c_str(), sizeof then);
-                self.use([&](T *now, sf_error *) {
-                    *now = then;
-                    return SF_STATUS_OK;
-                });
+                set_checked(self, then);
             },
             "state"_a);
 }
@@ -264,10 +290,7 @@ void bind_estimate(nb::module_ &m) {
         .def(
             "set_state",
             [](moments &self, uint64_t count, double mean, double m2, uint64_t nonfinite) {
-                self.use([&](sf_moments *now, sf_error *) {
-                    *now = sf_moments{count, mean, m2, nonfinite};
-                    return SF_STATUS_OK;
-                });
+                set_checked(self, sf_moments{count, mean, m2, nonfinite});
             },
             "count"_a, "mean"_a, "m2"_a, "nonfinite"_a);
 
@@ -293,10 +316,7 @@ void bind_estimate(nb::module_ &m) {
         .def(
             "set_state",
             [](vector_moments &self, uint64_t count, const vector3 &mean, double m2, uint64_t nonfinite) {
-                self.use([&](sf_vector_moments *now, sf_error *) {
-                    *now = sf_vector_moments{count, {mean[0], mean[1], mean[2]}, m2, nonfinite};
-                    return SF_STATUS_OK;
-                });
+                set_checked(self, sf_vector_moments{count, {mean[0], mean[1], mean[2]}, m2, nonfinite});
             },
             "count"_a, "mean"_a, "m2"_a, "nonfinite"_a);
 }

@@ -7,6 +7,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <cstring>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -121,6 +122,7 @@ struct watcher {
     std::exception_ptr failure;
 
     void tell(const char *message) {
+        if (interpreter_is_leaving()) return;
         nb::gil_scoped_acquire acquired;
         try {
             notice(message);
@@ -131,6 +133,7 @@ struct watcher {
 
     // Tells C whether to stop. Ctrl-C stops and is spent: the partial picture is the answer to it.
     int look(const sf_progress *progress) {
+        if (interpreter_is_leaving()) return 1;
         nb::gil_scoped_acquire acquired;
         try {
             if (PyErr_CheckSignals()) throw nb::python_error();
@@ -247,6 +250,10 @@ film_handle *load_film(const std::string &path) {
     return film.release();
 }
 
+void save_film(const film_handle &film, const std::string &path) {
+    call([&](sf_error *error) { return sf_film_save(film.film, path.c_str(), error); });
+}
+
 film_handle *merge_films(const std::vector<const film_handle *> &parts) {
     auto film = std::make_unique<film_handle>();
     std::vector<const sf_film *> films;
@@ -269,18 +276,25 @@ void bind_render(nb::module_ &m) {
         .def_ro("pixels_met", &sf_progress::pixels_met)
         .def_ro("tolerance", &sf_progress::tolerance)
         .def_ro("relmse", &sf_progress::relmse)
-        .def_prop_ro("round_finished", [](const sf_progress &p) { return p.round_finished != 0; });
+        .def_prop_ro("round_finished", [](const sf_progress &p) { return p.round_finished != 0; })
+        .def("__getstate__",
+             [](const sf_progress &p) { return nb::bytes(reinterpret_cast<const char *>(&p), sizeof p); })
+        .def("__setstate__", [](sf_progress &p, const nb::bytes &state) {
+            if (state.size() != sizeof p) throw nb::value_error("the state is another version's");
+            std::memcpy(new (&p) sf_progress, state.c_str(), sizeof p);
+        });
 
     nb::class_<film_handle>(m, "Film")
         .def_prop_ro("width", [](const film_handle &self) { return sf_film_width(self.film); })
         .def_prop_ro("height", [](const film_handle &self) { return sf_film_height(self.film); })
-        .def_ro("signalled", &film_handle::signalled)
+        .def_rw("signalled", &film_handle::signalled)
         .def_ro("failure", &film_handle::failure)
         .def("channels", &channels_of)
         .def("color", &color_of)
         .def("aovs", &aovs_of)
         .def("attributes", &attributes_of)
-        .def("summary", &summary_of);
+        .def("summary", &summary_of)
+        .def("save", &save_film, "path"_a);
 
     m.def("aov_names", [] {
         nb::typed<nb::list, nb::str> names;

@@ -29,3 +29,6 @@ class CheckpointError(OSError):
     def __init__(self, message: str, image: Image) -> None:
         super().__init__(message)
         self.image = image
+
+    def __reduce__(self) -> tuple[type[CheckpointError], tuple[str, Image]]:
+        return CheckpointError, (str(self), self.image)

@@ -8,8 +8,10 @@ from __future__ import annotations
 import logging
 import math
 import os
+import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -206,7 +208,8 @@ class Image:
     Notes
     -----
     The arrays are read-only views of the library's memory, which lives as long as any of them.
-    In a notebook an image shows its colours.
+    In a notebook an image shows its colours. A pickle has the whole film, some 120 bytes a pixel: images that
+    other processes rendered come back to be merged.
     """
 
     def __init__(self, film: _core.Film, exposure: float | str = 0.0) -> None:
@@ -330,11 +333,30 @@ class Image:
         """
         return heatmap(dict(self.channels), channel, self.metadata)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        with tempfile.TemporaryDirectory(prefix="sunfleck-") as folder:  # C writes files only
+            path = Path(folder, "image")
+            self._film.save(str(path))
+            return _make_image, (path.read_bytes(), self._film.signalled)
+
+    def __copy__(self) -> Image:
+        return self
+
     def _repr_png_(self) -> bytes:
         return png_bytes(self.channels, stops(self.exposure, self.color))
 
     def __repr__(self) -> str:
         return f"Image({self.width} x {self.height}, {int(self.samples.sum(dtype=np.uint64))} samples)"
+
+
+def _make_image(film: bytes, signalled: bool) -> Image:
+    """An image from its film's file: what a pickle of one calls."""
+    with tempfile.TemporaryDirectory(prefix="sunfleck-") as folder:
+        path = Path(folder, "image")
+        path.write_bytes(film)
+        loaded = _core.load_film(str(path))
+    loaded.signalled = signalled
+    return Image(loaded)
 
 
 def _tolerance(value: float | Tolerance | None) -> tuple[float, float]:

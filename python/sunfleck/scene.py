@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import inspect
 import logging
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -417,6 +418,14 @@ class Scene:
         dimensions = [PlanDimensions(*group) for group in plan.pop("dimensions")]
         return Plan(dimensions=dimensions, **plan)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Of what the constructor takes, each has an attribute of its name.
+        names = list(inspect.signature(Scene).parameters)
+        return _make_scene, ({name: self._shapes if name == "meshes" else getattr(self, name) for name in names},)
+
+    def __copy__(self) -> Scene:
+        return self
+
     def __repr__(self) -> str:
         others = [
             f"{count} {name}s, "
@@ -431,3 +440,8 @@ class Scene:
             f"Scene({self._info.mesh_count} meshes, {''.join(others)}{self._info.triangle_count} triangles, "
             f"{self._info.light_count} lights, max_bounces={self._max_bounces})"
         )
+
+
+def _make_scene(arguments: dict[str, Any]) -> Scene:
+    """A scene from what it was made of: what a pickle of one calls."""
+    return Scene(**arguments)

@@ -234,6 +234,11 @@ sf_status sf_render(const sf_scene *scene, const sf_render_options *options, sf_
  * SF_STATUS_IO where the file can't be read, is damaged, or is no checkpoint. Thread-safe. */
 sf_status sf_film_load(const char *path, sf_film **film, sf_error *error);
 
+/* Writes the film whole, some 120 bytes a pixel, beside and renamed: sf_film_load gives it back bit for bit,
+ * but for the summary's work_seconds, and it merges as before. A render does not go on from such a file.
+ * SF_STATUS_IO where it can't be written; whatever was at `path` is then still there. Thread-safe. */
+sf_status sf_film_save(const sf_film *film, const char *path, sf_error *error);
+
 /* One film of several of the same scene, frame size, pattern, pixel filter, stop rule and confidence:
  * replicates (other seeds over the same pixels), tiles (crops that together fill a rectangle), or
  * both. Works on the accumulators: a pixel's counts and moments merge as if its samples had been
@@ -285,7 +290,6 @@ typedef struct sf_attribute {
 size_t sf_film_attribute_count(const sf_film *film);
 sf_attribute sf_film_attribute(const sf_film *film, size_t index);
 
-/* What a render came to, over the film's pixels; those that a mask leaves out count nowhere. */
 /* What a thread does. */
 typedef enum sf_work {
     SF_WORK_COORDINATES = 0, /* the pattern's points */
@@ -304,6 +308,7 @@ typedef enum sf_work {
  * "sums", "film"; NULL for a number beyond. */
 const char *sf_work_name(sf_work work);
 
+/* What a render came to, over the film's pixels; those that a mask leaves out count nowhere. */
 typedef struct sf_film_summary {
     uint64_t pixels;
     uint64_t samples;                       /* in the film's pixels */
