@@ -325,8 +325,18 @@ static void test_arrays_are_copied_only_where_embree_would_read_past_the_page(vo
     free(pages);
 }
 
+static void test_embrees_lack_of_memory_is_told_as_such(void **state) {
+    (void)state;
+    sf_error error;
+    assert_int_equal(sf_fail_embree(&error, RTC_ERROR_OUT_OF_MEMORY, "refused shape %d", 7), SF_STATUS_OUT_OF_MEMORY);
+    assert_string_equal(error.message, "out of memory: Embree refused shape 7");
+    assert_int_equal(sf_fail_embree(&error, RTC_ERROR_INVALID_OPERATION, "refused shape %d", 7), SF_STATUS_BACKEND);
+    assert_string_equal(error.message, "Embree refused shape 7 (its error 3)");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_embrees_lack_of_memory_is_told_as_such),
         cmocka_unit_test(test_mesh_with_a_nan_vertex_is_refused_with_its_number),
         cmocka_unit_test(test_mesh_bad_values_are_refused),
         cmocka_unit_test(test_material_bad_values_are_refused),

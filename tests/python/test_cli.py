@@ -174,7 +174,6 @@ FULL_DISK = """
         ["points", "random", "-n", "20000", "-o", "p.npy"],
         ["points", "random", "-n", "20000", "-o", "p.csv"],
         ["points", "random", "-n", "20000", "-o", "p.txt"],
-        ["chart", "mappings", "sphere", "--quick", "-o", "chart.html"],
         ["lab", "randu-planes", "-o", "randu.png"],
     ],
 )

@@ -64,7 +64,7 @@ def every_kind() -> dict[str, Any]:
         "PiecewiseConstant1D": sf.PiecewiseConstant1D([1, 3]),
         "PiecewiseConstant2D": sf.PiecewiseConstant2D([[1, 0], [0, 3]]),
         "Integral": sf.integrate(lambda u: u[:, 0], d=1),
-        "Engine": Engine(2, pattern="sobol", seed=1),
+        "Engine": Engine("sobol", 2, seed=1),
     }
 
 
@@ -83,8 +83,10 @@ def fingerprint(value: Any) -> Any:
         return value.sample(np.linspace(0, 0.99, 50)).tobytes()
     if isinstance(value, sf.PiecewiseConstant2D):
         return value.sample(sf.points("sobol", 64)).tobytes()
-    if isinstance(value, sf.Rng):
+    if isinstance(value, (sf.Rng, np.random.BitGenerator)):
         return value.state
+    if isinstance(value, (sf.BatchMeans, sf.ConfidenceSequence)):
+        return value.__getstate__()
     if isinstance(value, Engine):
         return value.random(8).tobytes()
     if isinstance(value, sf.Progress):

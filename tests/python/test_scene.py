@@ -4,8 +4,6 @@
 """scene: arrays in place, what a scene holds, the plan, bad input."""
 
 import gc
-import subprocess
-import sys
 from typing import Any, cast
 
 import numpy as np
@@ -276,41 +274,3 @@ def test_a_plan_prints_as_a_table() -> None:
     assert "lens, intersect, emission, light" in table
     assert "at most 2 a path: 1 camera, 1 shadow, 0 surface" in table
     assert "4-5       light 1" in table
-
-
-MEMORY = """
-import resource, sys
-import numpy as np, sunfleck as sf
-
-n = 300
-x, y = np.meshgrid(np.arange(n), np.arange(n))
-vertices = np.stack([x.ravel(), y.ravel(), np.sin(x * y).ravel()], axis=1).astype(np.float32)
-k = (x[:-1, :-1] + n * y[:-1, :-1]).ravel()
-mesh = sf.Mesh(vertices, np.stack([k, k + 1, k + n], axis=1).astype(np.uint32))
-camera = sf.Camera((0, 0, 9), (1, 1, 0))
-shapes = {
-    "mesh": lambda: [mesh],
-    "instances": lambda: [sf.Instances(mesh, np.tile(np.eye(4)[:3], (2000, 1, 1)))],
-    "spheres": lambda: [sf.Sphere((i, 0, 0), 0.4) for i in range(3000)],
-}[sys.argv[1]]()
-sf.Scene(shapes, camera)  # threads and libraries are there from here on
-used = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
-made = 0
-for more in range(0, 1 << 26, 1 << 19):
-    resource.setrlimit(resource.RLIMIT_AS, (used + more, resource.RLIM_INFINITY))
-    try:
-        sf.Scene(shapes, camera)
-        made += 1
-    except MemoryError as error:
-        assert "memory" in str(error) or not str(error), error
-    if made > 3:
-        break
-print("made", made > 0)
-"""
-
-
-@pytest.mark.parametrize("shapes", ["mesh", "instances", "spheres"])
-def test_without_memory_for_embree_there_is_a_memory_error(shapes: str) -> None:
-    command = [sys.executable, "-c", MEMORY, shapes]
-    ended = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
-    assert (ended.stdout, ended.returncode) == ("made True\n", 0), ended.stderr
