@@ -337,7 +337,7 @@ class Image:
         with tempfile.TemporaryDirectory(prefix="sunfleck-") as folder:  # C writes files only
             path = Path(folder, "image")
             self._film.save(str(path))
-            return _make_image, (path.read_bytes(), self._film.signalled)
+            return _make_image, (path.read_bytes(), self._film.signalled, self.exposure)
 
     def __copy__(self) -> Image:
         return self
@@ -349,14 +349,14 @@ class Image:
         return f"Image({self.width} x {self.height}, {int(self.samples.sum(dtype=np.uint64))} samples)"
 
 
-def _make_image(film: bytes, signalled: bool) -> Image:
+def _make_image(film: bytes, signalled: bool, exposure: float | str) -> Image:
     """An image from its film's file: what a pickle of one calls."""
     with tempfile.TemporaryDirectory(prefix="sunfleck-") as folder:
         path = Path(folder, "image")
         path.write_bytes(film)
         loaded = _core.load_film(str(path))
     loaded.signalled = signalled
-    return Image(loaded)
+    return Image(loaded, exposure)
 
 
 def _tolerance(value: float | Tolerance | None) -> tuple[float, float]:

@@ -36,6 +36,7 @@ def every_kind() -> dict[str, Any]:
             suns=[sf.Sun((0, 0, -1), irradiance=(1, 1, 1))],
             light_choice="tree",
             robust=True,
+            exposure=1.5,
         ),
         "Image": image,
         "CheckpointError": sf.CheckpointError("full", image),
@@ -74,7 +75,7 @@ KINDS = every_kind()
 def fingerprint(value: Any) -> Any:
     """What two things that are the same have in common."""
     if isinstance(value, sf.Scene):
-        return value.info, value.plan(), value.camera, value.light_choice, value.robust
+        return value.info, value.plan(), value.camera, value.light_choice, value.robust, value.exposure
     if isinstance(value, sf.Image):
         return value.color.tobytes(), value.half_width.tobytes(), value.metadata, value.summary(), sorted(value.aovs)
     if isinstance(value, sf.CheckpointError):
@@ -148,6 +149,11 @@ def test_pictures_of_every_kind_come_back_bit_for_bit(penumbra: sf.Scene, option
     assert fingerprint(again) == fingerprint(image)
     assert again.stop_reason.tobytes() == image.stop_reason.tobytes()
     assert pickle.dumps(again)[:64] == pickle.dumps(image)[:64]
+
+
+def test_the_exposure_comes_back() -> None:
+    image = sf.render(KINDS["Scene"], 8, 8, spp=1)
+    assert pickle.loads(pickle.dumps(image)).exposure == image.exposure == 1.5
 
 
 def test_an_interrupted_picture_stays_one(penumbra: sf.Scene) -> None:
