@@ -55,6 +55,7 @@ def every_kind() -> dict[str, Any]:
         "Fog": sf.Fog(0.5),
         "Dielectric": sf.Dielectric(),
         "Tolerance": sf.Tolerance(relative=0.1),
+        "Limits": sf.Limits(),
         "Rng": sf.Rng("mt19937", seed=1),
         "BitGenerator": sf.Rng("pcg32", seed=1).bit_generator,
         "Moments": moments,
