@@ -29,10 +29,14 @@ Array = NDArray[np.float64]
 SCREEN = 1e-3  # the p-value below which a scene is drawn again
 AGAIN = 4  # times as many samples then
 BLOCKS = 32  # independent seeds of each side
+PATHS = 1e5  # of the library, for each of the two ways of a scene
+PLAIN_TESTS = 3e7  # of a ray against a primitive, for the plain tracer
 SLACK = 3e-4  # relative difference that single precision and the lifting of points off surfaces may make
 COLUMNS, ROWS = 3, 2
 TESTS = ("R", "G", "B", "A", *(f"part {x},{y}" for y in range(ROWS) for x in range(COLUMNS)))
 PAIRS = ("first - plain", "second - plain", "first - second")
+SIGNED = ("mitchell", "lanczos")  # filters with negative lobes
+SMALL = 110  # pixels of frames that many samples a pixel are afforded for
 TESTS_OF_SCENE = len(TESTS) * len(PAIRS)
 
 
@@ -73,14 +77,15 @@ class Way:
 
 
 def draw_frame(rng: np.random.Generator) -> Frame:
-    width, height = int(rng.integers(9, 34)), int(rng.integers(9, 26))
     pixel_filter = "box" if rng.random() < 0.4 else str(rng.choice(FILTERS))
+    small = pixel_filter in SIGNED or rng.random() < 0.3
+    width, height = (int(n) for n in rng.integers(7, (12, 10) if small else (32, 24)))
     crop, mask = None, None
-    if rng.random() < 0.3:
-        x, y = np.sort(rng.choice(width + 1, 2, replace=False)), np.sort(rng.choice(height + 1, 2, replace=False))
-        crop = int(x[0]), int(y[0]), int(x[1]), int(y[1])
     if rng.random() < 0.25:
-        mask = rng.random((height, width)) < rng.choice([0.1, 0.5, 0.9])
+        x, y = rng.integers(0, width // 2), rng.integers(0, height // 2)
+        crop = int(x), int(y), int(rng.integers(x + width // 3, width)) + 1, int(rng.integers(y + height // 3, height)) + 1
+    if rng.random() < 0.25:
+        mask = rng.random((height, width)) < rng.choice([0.2, 0.5, 0.9])
         x, y = (crop[0], crop[1]) if crop else (0, 0)
         mask[y, x] = True
     return Frame(width, height, pixel_filter, crop, mask)
@@ -100,7 +105,7 @@ def draw_way(rng: np.random.Generator, world: World, frame: Frame) -> Way:
         "robust": pick(False, False, True),
     }
     # Filters with negative lobes average their two signs apart, which is without bias where there are some of both.
-    signed = frame.pixel_filter in ("mitchell", "lanczos")
+    signed, small = frame.pixel_filter in SIGNED, frame.wanted.sum() <= SMALL
     seeds = pick("pixel", "pixel", "pixel", "thread", "shared")
     render: dict[str, Any] = {
         "pattern": pick("sobol", "sobol", "random", "halton", "jittered"),
@@ -109,13 +114,14 @@ def draw_way(rng: np.random.Generator, world: World, frame: Frame) -> Way:
         "roulette": pick(0, 0, 2, 3),
         "seeds": seeds,
     }
-    if rng.random() < 0.15 and not signed:
+    if small and rng.random() < 0.3 and not signed:
         render |= {"unbiased": True, "tolerance": 0.1, "min_spp": 16, "max_spp": 64}
         render["stop"] = pick("dyadic", "replicates", "standard-error")
         return Way(scene, render)
-    render["spp"] = pick(128, 160) if signed else pick(1, 2, 3, 4, 7, 8, 15, 16, 17, 31, 32, 33, 64, 128)
+    few = 1, 2, 3, 4, 7, 8, 15, 16, 17
+    render["spp"] = pick(128, 160) if signed else pick(*few, 31, 32, 33, 64, 128) if small else pick(*few)
     if render["pattern"] == "jittered" and not signed:
-        render["spp"] = pick(1, 2, 4, 9, 16, 64)
+        render["spp"] = pick(1, 2, 4, 9, 16)
     elif render["pattern"] != "jittered" and rng.random() < 0.2:
         render["start"] = pick(1, 16, 100)
     return Way(scene, render)
@@ -162,13 +168,12 @@ def _values(pictures: list[Array], frame: Frame) -> Array:
         row[:4] = pixels.mean(axis=0)
         sums = np.bincount(part, pixels[:, :3].mean(axis=1), ROWS * COLUMNS)
         row[4:] = sums / np.maximum(np.bincount(part, minlength=ROWS * COLUMNS), 1)
-    if frame.pixel_filter in ("mitchell", "lanczos"):  # alpha counts samples, whatever their sign
+    if frame.pixel_filter in SIGNED:  # alpha counts samples, whatever their sign
         out[:, 3] = 0
     return out
 
 
-def _image(scene: sf.Scene, frame: Frame, way: Way, seed: int, spp: int | None) -> tuple[Array, int]:
-    options = dict(way.render) if spp is None else way.render | {"spp": spp}
+def _image(scene: sf.Scene, frame: Frame, way: Way, seed: int) -> tuple[Array, int]:
     image = sf.render(
         scene,
         frame.width,
@@ -177,7 +182,7 @@ def _image(scene: sf.Scene, frame: Frame, way: Way, seed: int, spp: int | None) 
         crop=frame.crop,
         mask=frame.mask,
         seed=seed,
-        **options,
+        **way.render,
     )
     full = np.zeros((frame.height, frame.width, 4))
     x, y = frame.crop[:2] if frame.crop else (0, 0)
@@ -205,10 +210,11 @@ class Finding:
         return f"{self.pair}, {self.test}: {self.one:.6g} and {self.other:.6g} ({100 * relative:+.2f} %), p = {self.p:.1e}"
 
 
-def welch(a: Array, b: Array) -> Array:
-    """p-values (tests,) that the columns' means differ by more than `SLACK` of them."""
+def welch(a: Array, b: Array, unseen: float = 0.0) -> Array:
+    """p-values (tests,) that the columns' means differ by more than `SLACK` of them, and by more than `unseen`."""
     means = a.mean(axis=0), b.mean(axis=0)
     slack = SLACK * np.maximum(np.abs(means[0]), np.abs(means[1])) + 1e-7 * max(np.abs(means[1][:3]).max(), 1e-30)
+    slack = slack + unseen * np.where(np.arange(slack.size) < 4, 1, ROWS * COLUMNS)
     off = np.maximum(np.abs(means[0] - means[1]) - slack, 0)
     va, vb = a.var(axis=0, ddof=1) / len(a), b.var(axis=0, ddof=1) / len(b)
     both = va + vb
@@ -230,59 +236,71 @@ class Verdict:
     precision: float  # standard error of the frame's green, first way against the reference, over its mean
 
 
-def _spp_of_way(way: Way, pixels: int, paths: float) -> tuple[int | None, int]:
-    """Samples a pixel that the option is replaced by, and blocks: many seeds before many samples."""
-    blocks = BLOCKS
-    if "spp" not in way.render:
-        return None, blocks
-    while way.render["spp"] * pixels * blocks < paths and blocks < 4 * BLOCKS:
-        blocks *= 2
-    return None, blocks
+def _blocks(way: Way, pixels: int, paths: float) -> int:
+    """Seeds that make up so many paths; many where a render has few."""
+    return int(min(max(paths / (way.samples * pixels), BLOCKS), 4 * BLOCKS))
 
 
-def _draw(case: Case, library: Any, step: int, paths: float) -> tuple[list[Array], int]:
+def _draw(case: Case, library: Any, step: int) -> tuple[list[Array], int]:
     """Block values of the plain tracer and of both ways."""
     frame, world, times = case.frame, case.world, AGAIN if step else 1
     pixels = int(frame.wanted.sum())
-    cost = 1 + max(1, world.max_bounces) * (0.4 + world.primitives / 30) * 0.7
-    spp = max(1, round(times * paths / cost / pixels / BLOCKS))
+    rays = 1 + 1.5 * world.max_bounces
+    spp = max(1, round(times * PLAIN_TESTS / (rays * (world.primitives + 10)) / pixels / BLOCKS))
     plain = Reference(library, world, frame.width, frame.height, frame.pixel_filter)
     key = (case.seed << 20) + (step << 16)
     sides = [_values([plain.render(key + k, spp, frame.wanted) for k in range(BLOCKS)], frame)]
     nonfinite = 0
     for number, way in enumerate(case.ways):
         scene = world.scene(**way.scene)
-        _, blocks = _spp_of_way(way, pixels, 2e5 * times)
         pictures = []
-        for k in range(blocks * (AGAIN if step else 1)):
-            picture, dropped = _image(scene, frame, way, key + ((number + 1) << 12) + k, None)
+        for k in range(times * _blocks(way, frame.width * frame.height, PATHS)):
+            picture, dropped = _image(scene, frame, way, key + ((number + 1) << 12) + k)
             pictures.append(picture)
             nonfinite += dropped
         sides.append(_values(pictures, frame))
     return sides, nonfinite
 
 
-def _compare(sides: list[Array]) -> list[Finding]:
+def _unseen(case: Case, number: int, step: int) -> float:
+    """What a way by surface sampling alone may owe to hits too rare to have occurred.
+
+    Of events that none of n paths met, 15 / n is the probability that a chance of 3e-7 leaves open; each brings at
+    most what the brightest lamp shines. Such a way may show no light where there is little, and no spread either.
+    """
+    way, frame = case.ways[number], case.frame
+    if way.scene["light_sampling"] != "surface":
+        return 0.0
+    size = frame.width * frame.height
+    paths = (AGAIN if step else 1) * _blocks(way, size, PATHS) * int(frame.wanted.sum()) * way.samples
+    lamps = [max(item.surface.emission) for item in case.world.items]
+    suns = [max(s["irradiance"]) / math.sin(math.radians(s["angular_radius"])) ** 2 / math.pi for s in case.world.suns]
+    sky = [float(case.world.environment["image"].max())] if case.world.environment else []
+    return 15 / paths * max([0.0, *lamps, *suns, *sky])
+
+
+def _compare(case: Case, sides: list[Array], step: int) -> list[Finding]:
     out = []
+    rare = [0.0, _unseen(case, 0, step), _unseen(case, 1, step)]
     for name, one, other in zip(PAIRS, (1, 2, 1), (0, 0, 2), strict=True):
-        p = welch(sides[one], sides[other])
+        p = welch(sides[one], sides[other], rare[one] + rare[other])
         means = sides[one].mean(axis=0), sides[other].mean(axis=0)
         out += [Finding(name, t, *(float(m[i]) for m in means), float(p[i])) for i, t in enumerate(TESTS)]
     return out
 
 
-def judge(seed: int, library: Any, paths: float = 2.5e5) -> Verdict:
+def judge(seed: int, library: Any) -> Verdict:
     """Renders a scene by the plain tracer and in two ways, and compares the three."""
     case = Case(seed)
-    sides, nonfinite = _draw(case, library, 0, paths)
-    found = _compare(sides)
+    sides, nonfinite = _draw(case, library, 0)
+    found = _compare(case, sides, 0)
     least = min(f.p for f in found)
     error = math.sqrt(sum(float(s[:, 1].var(ddof=1)) / len(s) for s in sides[:2]))
     mean = float(sides[0][:, 1].mean())
     verdict = Verdict(seed, [], nonfinite, least < SCREEN, least, error / mean if mean > 0 else 0.0)
     if verdict.drawn_again:
-        sides, more = _draw(case, library, 1, paths)
-        verdict.findings = _compare(sides)
+        sides, more = _draw(case, library, 1)
+        verdict.findings = _compare(case, sides, 1)
         verdict.nonfinite += more
     return verdict
 

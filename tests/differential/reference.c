@@ -105,18 +105,16 @@ static vec on_sphere_cap(random *r, double lowest) { /* uniform where z >= lowes
 
 /* ---- rays ---- */
 
-static double hit_triangle(const primitive *p, vec o, vec d, double near) { /* Moeller & Trumbore 1997 */
-    vec across = cross(d, p->c), off, up;
-    double det = dot(p->b, across), u, v, t;
-    if (det == 0) return INFINITY;
-    off = sub(o, p->a);
-    u = dot(off, across) / det;
-    if (u < 0 || u > 1) return INFINITY;
-    up = cross(off, p->b);
-    v = dot(d, up) / det;
-    if (v < 0 || u + v > 1) return INFINITY;
-    t = dot(p->c, up) / det;
-    return t > near ? t : INFINITY;
+/* o + t d = a + u b + v c by Cramer's rule, undivided until the triangle is known to be hit. */
+static double hit_triangle(const primitive *p, vec o, vec d, double near) {
+    vec off = sub(o, p->a), turn;
+    double height = 2 * p->area * dot(off, p->normal), along = -2 * p->area * dot(d, p->normal), u, v;
+    if (height * along <= 0) return INFINITY;
+    turn = cross(d, off);
+    u = along < 0 ? dot(p->c, turn) : -dot(p->c, turn);
+    v = along < 0 ? -dot(p->b, turn) : dot(p->b, turn);
+    if (u < 0 || v < 0 || u + v > fabs(along)) return INFINITY;
+    return height / along > near ? height / along : INFINITY;
 }
 static double hit_sphere(const primitive *p, vec o, vec d, double near) {
     vec off = sub(o, p->a);

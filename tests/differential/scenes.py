@@ -321,7 +321,7 @@ class Maker:
         outer = len(sky["suns"]) + (sky["environment"] is not None)
         kinds = self.pick(("triangle",), ("rectangle",), ("triangle", "rectangle"), ("sphere",), ("disk",),
                           ("triangle", "rectangle", "sphere", "disk"))  # fmt: skip
-        own = max(0, lights - outer * int(rng.integers(2)))
+        own = max(int(self.room or self.fogged), lights - outer * int(rng.integers(2)))
         for _ in range(own):
             self.add_lamp(self.pick(*kinds), 1 / own)
         count = World(self.items, {}).primitives
