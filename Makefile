@@ -19,7 +19,7 @@ MITSUBA_PYTHON = build/mitsuba/bin/python
 with_llvm = DRJIT_LIBLLVM_PATH=$$(ls /usr/lib/*/libLLVM.so.19* 2>/dev/null | head -n 1)
 with_mitsuba = $(with_llvm) PYTHONPATH=$$($(venv) -c 'import sysconfig; print(sysconfig.get_path("platlib"))') $(MITSUBA_PYTHON)
 
-.PHONY: help demo test sanitize clang lint docs bench bench-peers battery gallery clean packages-demo packages-test packages-bench packages-clang build-c
+.PHONY: help demo test sanitize clang differential lint docs bench bench-peers battery gallery clean packages-demo packages-test packages-bench packages-clang build-c
 .DELETE_ON_ERROR:
 .NOTPARALLEL: # packages come first; CMake and pip use all processors themselves
 
@@ -28,6 +28,7 @@ help:
 	@echo "make test      builds everything, runs the C and the Python tests, builds the site"
 	@echo "make sanitize  runs the C tests under AddressSanitizer with UBSan, then ThreadSanitizer"
 	@echo "make clang     builds core and render by clang, warnings as errors, and runs the C tests of core"
+	@echo "make differential  compares 2,000 random scenes with a plain path tracer; scenes=N and first=SEED are others"
 	@echo "make lint      ruff, mypy --strict, warnings as errors, clang-format"
 	@echo "make docs      builds the site into build/site/, which needs no network to be read"
 	@echo "make bench     measures speed and accuracy; figures go to standard output"
@@ -57,6 +58,12 @@ clang: packages-clang
 	    -D CMAKE_C_COMPILER=clang -D CMAKE_CXX_COMPILER=clang++ -D SUNFLECK_BUILD_IMAGE=OFF -D SUNFLECK_INSTALL=OFF
 	cmake --build build/clang --parallel
 	ctest --test-dir build/clang --output-on-failure -L core
+
+# Some 40 minutes of two processors; Ctrl-C ends with a report of the scenes so far.
+scenes = 2000
+first = 1000000
+differential: packages-demo .venv/.test
+	$(venv) tests/differential/run.py --scenes $(scenes) --first $(first)
 
 lint: packages-test .venv/.lint
 	.venv/bin/ruff check .

@@ -83,11 +83,15 @@ def draw_frame(rng: np.random.Generator) -> Frame:
     crop, mask = None, None
     if rng.random() < 0.25:
         x, y = rng.integers(0, width // 2), rng.integers(0, height // 2)
-        crop = int(x), int(y), int(rng.integers(x + width // 3, width)) + 1, int(rng.integers(y + height // 3, height)) + 1
+        crop = (
+            int(x),
+            int(y),
+            int(rng.integers(x + width // 3, width)) + 1,
+            int(rng.integers(y + height // 3, height)) + 1,
+        )
     if rng.random() < 0.25:
         mask = rng.random((height, width)) < rng.choice([0.2, 0.5, 0.9])
-        x, y = (crop[0], crop[1]) if crop else (0, 0)
-        mask[y, x] = True
+        mask[crop[1] if crop else 0, crop[0] if crop else 0] = True  # one pixel at least
     return Frame(width, height, pixel_filter, crop, mask)
 
 
@@ -207,7 +211,9 @@ class Finding:
 
     def __str__(self) -> str:
         relative = (self.one - self.other) / self.other if self.other else math.inf
-        return f"{self.pair}, {self.test}: {self.one:.6g} and {self.other:.6g} ({100 * relative:+.2f} %), p = {self.p:.1e}"
+        return (
+            f"{self.pair}, {self.test}: {self.one:.6g} and {self.other:.6g} ({100 * relative:+.2f} %), p = {self.p:.1e}"
+        )
 
 
 def welch(a: Array, b: Array, unseen: float = 0.0) -> Array:
@@ -276,7 +282,7 @@ def _unseen(case: Case, number: int, step: int) -> float:
     lamps = [max(item.surface.emission) for item in case.world.items]
     suns = [max(s["irradiance"]) / math.sin(math.radians(s["angular_radius"])) ** 2 / math.pi for s in case.world.suns]
     sky = [float(case.world.environment["image"].max())] if case.world.environment else []
-    return 15 / paths * max([0.0, *lamps, *suns, *sky])
+    return float(15 / paths * max([0.0, *lamps, *suns, *sky]))
 
 
 def _compare(case: Case, sides: list[Array], step: int) -> list[Finding]:
@@ -285,7 +291,7 @@ def _compare(case: Case, sides: list[Array], step: int) -> list[Finding]:
     for name, one, other in zip(PAIRS, (1, 2, 1), (0, 0, 2), strict=True):
         p = welch(sides[one], sides[other], rare[one] + rare[other])
         means = sides[one].mean(axis=0), sides[other].mean(axis=0)
-        out += [Finding(name, t, *(float(m[i]) for m in means), float(p[i])) for i, t in enumerate(TESTS)]
+        out += [Finding(name, t, float(a), float(b), float(q)) for t, a, b, q in zip(TESTS, *means, p, strict=True)]
     return out
 
 

@@ -12,10 +12,8 @@
  * scene_file.py fills the structures by ctypes: their layout is the same there. */
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
 
-#define PI 3.14159265358979323846
-#define FILTER_BINS 8192
+#include "reference_filters.h"
 
 typedef struct vec {
     double x, y, z;
@@ -36,7 +34,7 @@ typedef struct primitive {
 } primitive;
 
 typedef struct sun {
-    vec axis; /* of unit length */
+    vec axis;                  /* of unit length */
     double angle, radiance[3]; /* angle 0: one direction, and `radiance` is irradiance */
 } sun;
 
@@ -196,7 +194,9 @@ static vec refracted(vec w, vec h, double eta) {
     return sub(times(c / eta - sqrt(fmax(0, 1 - (1 - c * c) / (eta * eta))), h), times(1 / eta, w));
 }
 
-static int smooth(const material *m) { return m->kind == MIRROR || (m->kind >= DIELECTRIC && m->kind != FOG && m->alpha == 0); }
+static int smooth(const material *m) {
+    return m->kind == MIRROR || (m->kind >= DIELECTRIC && m->kind != FOG && m->alpha == 0);
+}
 
 static void conductor(const vertex *x, vec v, double value[3], double *pdf) {
     vec h = unit(add(x->w, v));
@@ -279,9 +279,7 @@ static double cone(const primitive *p, vec from) { /* the cosine of its half ang
     double square = p->b.x * p->b.x, off = dot(sub(p->a, from), sub(p->a, from));
     return off > square ? sqrt(1 - square / off) : 2;
 }
-static vec facing(const primitive *p, vec point) {
-    return p->kind == SPHERE ? unit(sub(point, p->a)) : p->normal;
-}
+static vec facing(const primitive *p, vec point) { return p->kind == SPHERE ? unit(sub(point, p->a)) : p->normal; }
 /* Density by solid angle with which `from` would draw the direction d to the primitive, hit at a distance. */
 static double light_density(const primitive *p, vec from, vec d, double distance) {
     if (p->kind != SPHERE) return distance * distance / (fabs(dot(d, p->normal)) * p->area);
@@ -341,7 +339,8 @@ static vec sample_sky(const scene *s, double power, random *r) {
     double top = cos(PI * (double)(k / s->sky_width) / h), bottom = cos(PI * (double)(k / s->sky_width + 1) / h);
     double z = top + draw(r) * (bottom - top), ring = sqrt(fmax(0, 1 - z * z));
     double longitude = PI * (1 - 2 * ((double)(k % s->sky_width) + draw(r)) / (double)s->sky_width);
-    return add(times(z, s->sky_up), add(times(ring * cos(longitude), s->sky_front), times(ring * sin(longitude), s->sky_left)));
+    return add(times(z, s->sky_up),
+               add(times(ring * cos(longitude), s->sky_front), times(ring * sin(longitude), s->sky_left)));
 }
 
 /* What may arrive at a vertex from the lights, all of them: one is kept. */
@@ -381,7 +380,8 @@ static void gather(const scene *s, const vertex *x, double sky, random *r, const
         const sun *u = s->suns + i;
         double lowest = cos(u->angle);
         d = u->angle > 0 ? to_world(u->axis, on_sphere_cap(r, lowest)) : u->axis;
-        consider(s, x, d, INFINITY, u->angle > 0 ? 1 / (2 * PI * (1 - lowest)) : 1, u->angle == 0, u->radiance, r, &kept);
+        consider(s, x, d, INFINITY, u->angle > 0 ? 1 / (2 * PI * (1 - lowest)) : 1, u->angle == 0, u->radiance, r,
+                 &kept);
     }
     if (s->sky) {
         d = sample_sky(s, sky, r);
@@ -446,57 +446,7 @@ static void follow(const scene *s, vec o, vec d, double weight, double sky, rand
     }
 }
 
-/* ---- pixel filters, as tables of their absolute values along an axis ---- */
-
-enum { BOX, TENT, GAUSSIAN, GAUSSIAN_TRUNCATED, BLACKMAN_HARRIS, MITCHELL, LANCZOS };
-static const double reach_of[] = {0.5, 1, 2.4, 1.5, 1.5, 2, 3};
-
-static double sinc(double x) { return x == 0 ? 1 : sin(PI * x) / (PI * x); }
-static double filter_at(int64_t filter, double x) {
-    double d = fabs(x), p = 2 * PI * (x + 1.5) / 3;
-    switch (filter) {
-        case TENT: return 1 - d;
-        case GAUSSIAN:
-        case GAUSSIAN_TRUNCATED: return exp(-x * x / (2 * 0.4 * 0.4));
-        case BLACKMAN_HARRIS: return 0.35875 - 0.48829 * cos(p) + 0.14128 * cos(2 * p) - 0.01168 * cos(3 * p);
-        case MITCHELL: /* Mitchell & Netravali 1988, eq. 8, with B = C = 1/3 */
-            return d < 1 ? (7 * d * d * d - 12 * d * d + 16.0 / 3) / 6
-                         : (-7.0 / 3 * d * d * d + 12 * d * d - 20 * d + 32.0 / 3) / 6;
-        case LANCZOS: return sinc(x) * sinc(x / 3);
-        default: return 1;
-    }
-}
-typedef struct filter_table {
-    double sums[FILTER_BINS + 1], reach, ratio; /* ratio: integral of |f| over that of f */
-    int64_t filter;
-} filter_table;
-
-static void tabulate(filter_table *t, int64_t filter) {
-    double plain = 0;
-    t->filter = filter;
-    t->reach = reach_of[filter];
-    t->sums[0] = 0;
-    for (int i = 0; i < FILTER_BINS; ++i) {
-        double f = filter_at(filter, ((i + 0.5) / FILTER_BINS * 2 - 1) * t->reach);
-        t->sums[i + 1] = t->sums[i] + fabs(f);
-        plain += f;
-    }
-    t->ratio = t->sums[FILTER_BINS] / plain;
-}
-static double place(const filter_table *t, random *r, double *weight) {
-    double wanted = draw(r) * t->sums[FILTER_BINS];
-    int low = 0, high = FILTER_BINS;
-    while (high - low > 1) {
-        int middle = (low + high) / 2;
-        if (t->sums[middle] <= wanted)
-            low = middle;
-        else
-            high = middle;
-    }
-    double x = ((low + draw(r)) / FILTER_BINS * 2 - 1) * t->reach;
-    *weight *= filter_at(t->filter, x) < 0 ? -t->ratio : t->ratio;
-    return x;
-}
+/* ---- pictures ---- */
 
 /* Renders `spp` samples of each of the pixels that `wanted` marks into out (height x width x 4: R, G, B,
  * share of rays that met something). Samples of different seeds are independent. */
@@ -511,8 +461,8 @@ void reference_render(const scene *s, uint64_t seed, int64_t spp, const uint8_t 
             double x, y, weight;
             do {
                 weight = 1;
-                x = place(&table, &r, &weight);
-                y = place(&table, &r, &weight);
+                x = place(&table, draw(&r), draw(&r), &weight);
+                y = place(&table, draw(&r), draw(&r), &weight);
             } while (s->filter == GAUSSIAN_TRUNCATED && x * x + y * y > table.reach * table.reach);
             double across = ((double)(k % s->width) + 0.5 + x - (double)s->width / 2) * s->pixel;
             double down = ((double)(k / s->width) + 0.5 + y - (double)s->height / 2) * s->pixel;

@@ -48,7 +48,13 @@ def build(folder: Path) -> ctypes.CDLL:
     flags = ["-std=c99", "-O2", "-Wall", "-Wextra", "-shared", "-fPIC"]
     subprocess.run([*compiler.split(), *flags, str(source), "-o", str(library), "-lm"], check=True)
     loaded = ctypes.CDLL(str(library))
-    loaded.reference_render.argtypes = [ctypes.POINTER(_Scene), ctypes.c_uint64, _long, ctypes.c_void_p, ctypes.c_void_p]
+    loaded.reference_render.argtypes = [
+        ctypes.POINTER(_Scene),
+        ctypes.c_uint64,
+        _long,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
     loaded.reference_render.restype = None
     return loaded
 

@@ -3,8 +3,8 @@
 
 """Compares the renderer with the plain path tracer on many random scenes, and prints a report.
 
-    run.py [--scenes N] [--first SEED] [--rate ALPHA] [--workers N]
-    run.py --scene SEED        one scene, with all its tests
+run.py [--scenes N] [--first SEED] [--rate ALPHA] [--workers N]
+run.py --scene SEED        one scene, with all its tests
 """
 
 from __future__ import annotations
@@ -62,6 +62,24 @@ def _one(seed: int, library: Any) -> int:
     return bool(holm([verdict], 1e-3))
 
 
+def _many(seeds: range, library: Any, workers: int) -> list[Verdict]:
+    """The verdicts, told as they come; those so far, where Ctrl-C ends it."""
+    verdicts: list[Verdict] = []
+    start = time.monotonic()
+    print(f"scenes {seeds.start} to {seeds.stop - 1}; Ctrl-C ends with a report", flush=True)
+    try:
+        for verdict in judge_all(seeds, library, workers):
+            verdicts.append(verdict)
+            least = min((f.p for f in verdict.findings), default=1.0)
+            if least < 1e-5:
+                print(f"scene {verdict.seed}: p = {least:.1e}", flush=True)
+            if len(verdicts) % 50 == 0:
+                print(f"{len(verdicts)} scenes, {time.monotonic() - start:.0f} s", flush=True)
+    except KeyboardInterrupt:
+        print("\ninterrupted: a report of the scenes so far", file=sys.stderr)
+    return verdicts
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scenes", type=int, default=2000)
@@ -73,19 +91,8 @@ def main() -> int:
     library = load()
     if arguments.scene is not None:
         return _one(arguments.scene, library)
-    verdicts: list[Verdict] = []
-    start = time.monotonic()
-    print(f"scenes {arguments.first} to {arguments.first + arguments.scenes - 1}; Ctrl-C ends with a report", flush=True)
-    try:
-        for verdict in judge_all(range(arguments.first, arguments.first + arguments.scenes), library, arguments.workers):
-            verdicts.append(verdict)
-            least = min((f.p for f in verdict.findings), default=1.0)
-            if least < 1e-5:
-                print(f"scene {verdict.seed}: p = {least:.1e}", flush=True)
-            if len(verdicts) % 50 == 0:
-                print(f"{len(verdicts)} scenes, {time.monotonic() - start:.0f} s", flush=True)
-    except KeyboardInterrupt:
-        print("\ninterrupted: a report of the scenes so far", file=sys.stderr)
+    seeds = range(arguments.first, arguments.first + arguments.scenes)
+    verdicts = _many(seeds, library, arguments.workers)
     if not verdicts:
         return 130
     print(report(verdicts, arguments.rate))

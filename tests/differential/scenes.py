@@ -86,8 +86,9 @@ class World:
             else:
                 shapes.append(sf.Disk(_three(item.center), _three(item.normal), item.radius, **vars(item.surface)))
         for members in groups.values():
-            meshes = [_mesh(item) for item in members]
-            shapes.append(sf.Instances(meshes, members[0].transforms, members[0].albedos))
+            meshes, transforms = [_mesh(item) for item in members], members[0].transforms
+            assert transforms is not None
+            shapes.append(sf.Instances(meshes, transforms, members[0].albedos))
         return sf.Scene(
             shapes,
             sf.Camera(**self.camera),
@@ -127,7 +128,7 @@ def _quad(center: Array, u: Array, v: Array) -> tuple[Array, NDArray[np.uint32]]
 BOX_FACES = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
 
 
-def _box(center: Array, half: Array, turn: Array, inward: bool = False) -> tuple[Array, NDArray[np.uint32]]:
+def box(center: Array, half: Array, turn: Array, inward: bool = False) -> tuple[Array, NDArray[np.uint32]]:
     corners = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], dtype=float) * half
     faces = [(a, b, c) for a, b, c, d in BOX_FACES] + [(a, c, d) for a, b, c, d in BOX_FACES]
     triangles = np.array(faces, dtype=np.uint32)
@@ -166,7 +167,9 @@ class Maker:
         rng = self.rng
         if not (self.narrow or self.rough_only) or rng.random() < 0.5:
             return Surface(self.pick(self.color(0.2, 0.85), self.color(0.2, 0.85), (0.0, 0.0, 0.0)))
-        roughness = float(rng.uniform(0.5, 1)) if self.rough_only else self.pick(0.0, 0.005, float(rng.uniform(0.45, 1)))
+        roughness = (
+            float(rng.uniform(0.5, 1)) if self.rough_only else self.pick(0.0, 0.005, float(rng.uniform(0.45, 1)))
+        )
         ior = self.pick(1.33, 1.5, 1.8, 1 / 1.4, 2.4)
         glass = sf.Dielectric(ior, roughness)
         kinds: list[Any] = [sf.Conductor(roughness), glass]
@@ -189,7 +192,7 @@ class Maker:
     def add_walls(self) -> None:
         rng = self.rng
         if self.room:
-            shape = _box(np.zeros(3), np.array([1.3, 1.3, 1.0]), np.eye(3), inward=True)
+            shape = box(np.zeros(3), np.array([1.3, 1.3, 1.0]), np.eye(3), inward=True)
             self.add_mesh(shape, Surface(self.color(0.3, 0.8)))
             return
         z = np.array([0, 0, -0.9 + 0.05 * rng.random()])
@@ -201,7 +204,7 @@ class Maker:
         kind = self.pick("box", "ball", "disk", "triangle", "quad", "tetrahedron", "ball")
         size, center = float(rng.uniform(0.12, 0.4)), self.spot()
         if kind == "box" and room_left >= 12:
-            self.add_mesh(_box(center, size * rng.uniform(0.5, 1, 3), _rotation(rng)), self.surface(True))
+            self.add_mesh(box(center, size * rng.uniform(0.5, 1, 3), _rotation(rng)), self.surface(True))
             return 12
         if kind == "tetrahedron" and room_left >= 4:
             self.add_mesh((center + size * TETRAHEDRON @ _rotation(rng).T, TETRAHEDRON_FACES), self.surface(True))
@@ -234,7 +237,7 @@ class Maker:
             size = float(rng.uniform(0.1, 0.22))
             shape = (size * TETRAHEDRON, TETRAHEDRON_FACES)
             if rng.random() < 0.5:
-                shape = _box(np.zeros(3), size * rng.uniform(0.5, 1, 3), np.eye(3))
+                shape = box(np.zeros(3), size * rng.uniform(0.5, 1, 3), np.eye(3))
             surface = self.surface(True)
             if k == 1 and rng.random() < 0.6:
                 shape = _quad(np.array([0, 0, 0.3]), np.array([self.lamp_size(), 0, 0]), np.array([0, 0.12, 0]))
@@ -271,7 +274,9 @@ class Maker:
         elif kind == "rectangle":
             self.add_mesh(_quad(center, size * turn[0], size * turn[1]), surface)
         else:
-            corners = center + size * np.array([turn[0], -0.5 * turn[0] + 0.87 * turn[1], -0.5 * turn[0] - 0.87 * turn[1]])
+            corners = center + size * np.array(
+                [turn[0], -0.5 * turn[0] + 0.87 * turn[1], -0.5 * turn[0] - 0.87 * turn[1]]
+            )
             self.add_mesh((corners, np.array([[0, 1, 2]], dtype=np.uint32)), surface)
 
     def sky(self, count: int) -> dict[str, Any]:
@@ -292,7 +297,11 @@ class Maker:
                 picture *= 0.05
                 picture[rng.integers(height - 1), rng.integers(width)] = rng.uniform(3, 12, 3)
             up = _three(rng.normal(size=3)) if rng.random() < 0.5 else self.pick((0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
-            out["environment"] = {"image": picture.astype(np.float32), "up": up, "rotation": float(rng.uniform(-400, 400))}
+            out["environment"] = {
+                "image": picture.astype(np.float32),
+                "up": up,
+                "rotation": float(rng.uniform(-400, 400)),
+            }
         return out
 
     # -- the whole --
