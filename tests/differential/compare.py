@@ -232,24 +232,32 @@ def welch(a: Array, b: Array, unseen: float = 0.0) -> Array:
 
 @dataclass
 class Verdict:
-    """What came of a scene; `findings` are those of the second step, none where there was none."""
+    """What came of a scene."""
 
     seed: int
-    findings: list[Finding]
-    nonfinite: int
-    drawn_again: bool
-    screen: float  # the least p-value of the first step
-    precision: float  # standard error of the frame's green, first way against the reference, over its mean
+    findings: list[Finding] = field(default_factory=list)  # the second step's; none where there was none
+    nonfinite: int = 0  # samples
+    drawn_again: bool = False
+    screen: float = 1.0  # the least p-value of the first step
+    precision: float = 0.0  # standard error of the frame's green, first way against the reference, over its mean
+    crash: str = ""
+
+    @property
+    def broken(self) -> str:
+        """What is wrong with it whatever its means; empty where nothing is."""
+        return self.crash or (f"{self.nonfinite} samples that are not finite" if self.nonfinite else "")
 
 
-def _blocks(way: Way, pixels: int, paths: float) -> int:
-    """Seeds that make up so many paths; many where a render has few."""
-    return int(min(max(paths / (way.samples * pixels), BLOCKS), 4 * BLOCKS))
+def _blocks(case: Case, number: int, step: int, effort: float) -> int:
+    """Seeds that a way is rendered with; many where a render has few paths."""
+    way, size = case.ways[number], case.frame.width * case.frame.height
+    blocks = min(max(effort * PATHS / (way.samples * size), BLOCKS), 4 * BLOCKS)
+    return int(blocks) * (AGAIN if step else 1)
 
 
-def _draw(case: Case, library: Any, step: int) -> tuple[list[Array], int]:
+def _draw(case: Case, library: Any, step: int, effort: float) -> tuple[list[Array], int]:
     """Block values of the plain tracer and of both ways."""
-    frame, world, times = case.frame, case.world, AGAIN if step else 1
+    frame, world, times = case.frame, case.world, effort * (AGAIN if step else 1)
     pixels = int(frame.wanted.sum())
     rays = 1 + 1.5 * world.max_bounces
     spp = max(1, round(times * PLAIN_TESTS / (rays * (world.primitives + 10)) / pixels / BLOCKS))
@@ -260,7 +268,7 @@ def _draw(case: Case, library: Any, step: int) -> tuple[list[Array], int]:
     for number, way in enumerate(case.ways):
         scene = world.scene(**way.scene)
         pictures = []
-        for k in range(times * _blocks(way, frame.width * frame.height, PATHS)):
+        for k in range(_blocks(case, number, step, effort)):
             picture, dropped = _image(scene, frame, way, key + ((number + 1) << 12) + k)
             pictures.append(picture)
             nonfinite += dropped
@@ -268,7 +276,7 @@ def _draw(case: Case, library: Any, step: int) -> tuple[list[Array], int]:
     return sides, nonfinite
 
 
-def _unseen(case: Case, number: int, step: int) -> float:
+def _unseen(case: Case, number: int, step: int, effort: float) -> float:
     """What a way by surface sampling alone may owe to hits too rare to have occurred.
 
     Of events that none of n paths met, 15 / n is the probability that a chance of 3e-7 leaves open; each brings at
@@ -277,17 +285,16 @@ def _unseen(case: Case, number: int, step: int) -> float:
     way, frame = case.ways[number], case.frame
     if way.scene["light_sampling"] != "surface":
         return 0.0
-    size = frame.width * frame.height
-    paths = (AGAIN if step else 1) * _blocks(way, size, PATHS) * int(frame.wanted.sum()) * way.samples
+    paths = _blocks(case, number, step, effort) * int(frame.wanted.sum()) * way.samples
     lamps = [max(item.surface.emission) for item in case.world.items]
     suns = [max(s["irradiance"]) / math.sin(math.radians(s["angular_radius"])) ** 2 / math.pi for s in case.world.suns]
     sky = [float(case.world.environment["image"].max())] if case.world.environment else []
     return float(15 / paths * max([0.0, *lamps, *suns, *sky]))
 
 
-def _compare(case: Case, sides: list[Array], step: int) -> list[Finding]:
+def _compare(case: Case, sides: list[Array], step: int, effort: float) -> list[Finding]:
     out = []
-    rare = [0.0, _unseen(case, 0, step), _unseen(case, 1, step)]
+    rare = [0.0, _unseen(case, 0, step, effort), _unseen(case, 1, step, effort)]
     for name, one, other in zip(PAIRS, (1, 2, 1), (0, 0, 2), strict=True):
         p = welch(sides[one], sides[other], rare[one] + rare[other])
         means = sides[one].mean(axis=0), sides[other].mean(axis=0)
@@ -295,18 +302,21 @@ def _compare(case: Case, sides: list[Array], step: int) -> list[Finding]:
     return out
 
 
-def judge(seed: int, library: Any) -> Verdict:
-    """Renders a scene by the plain tracer and in two ways, and compares the three."""
+def judge(seed: int, library: Any, effort: float = 1.0) -> Verdict:
+    """Renders a scene by the plain tracer and in two ways, and compares the three.
+
+    `effort` multiplies the samples of all of them, but that a way has `BLOCKS` seeds at the least.
+    """
     case = Case(seed)
-    sides, nonfinite = _draw(case, library, 0)
-    found = _compare(case, sides, 0)
+    sides, nonfinite = _draw(case, library, 0, effort)
+    found = _compare(case, sides, 0, effort)
     least = min(f.p for f in found)
     error = math.sqrt(sum(float(s[:, 1].var(ddof=1)) / len(s) for s in sides[:2]))
     mean = float(sides[0][:, 1].mean())
     verdict = Verdict(seed, [], nonfinite, least < SCREEN, least, error / mean if mean > 0 else 0.0)
     if verdict.drawn_again:
-        sides, more = _draw(case, library, 1)
-        verdict.findings = _compare(case, sides, 1)
+        sides, more = _draw(case, library, 1, effort)
+        verdict.findings = _compare(case, sides, 1, effort)
         verdict.nonfinite += more
     return verdict
 

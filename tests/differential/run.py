@@ -3,39 +3,55 @@
 
 """Compares the renderer with the plain path tracer on many random scenes, and prints a report.
 
-run.py [--scenes N] [--first SEED] [--rate ALPHA] [--workers N]
+run.py [--scenes N] [--first SEED] [--rate ALPHA] [--workers N] [--effort X]
 run.py --scene SEED        one scene, with all its tests
 """
 
 from __future__ import annotations
 
 import argparse
+import queue
 import sys
+import threading
 import time
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor, as_completed
-from typing import Any
 
 import sunfleck as sf
-from compare import TESTS_OF_SCENE, Case, Verdict, holm, judge
-from reference import load
+from compare import TESTS_OF_SCENE, Case, Verdict, holm
+from worker import Worker
 
 
-def judge_all(seeds: range, library: Any, workers: int) -> Iterator[Verdict]:
-    """Verdicts in the order that they come; Ctrl-C and an early end leave the scenes not yet begun."""
-    pool = ThreadPoolExecutor(workers)
+def judge_all(seeds: range, workers: int, effort: float = 1.0) -> Iterator[Verdict]:
+    """Verdicts in the order that they come, of scenes judged in so many processes."""
+    waiting, done, threads = iter(seeds), queue.Queue[Verdict](), []
+    crew = [Worker(effort) for _ in range(workers)]
+    lock = threading.Lock()
+
+    def work(worker: Worker) -> None:
+        while True:
+            with lock:
+                seed = next(waiting, None)
+            if seed is None:
+                return
+            done.put(worker.judge(seed))
+
     try:
-        for done in as_completed([pool.submit(judge, seed, library) for seed in seeds]):
-            yield done.result()
+        for worker in crew:
+            threads.append(threading.Thread(target=work, args=(worker,), daemon=True))
+            threads[-1].start()
+        for _ in seeds:
+            yield done.get()
     finally:
-        pool.shutdown(cancel_futures=True)
+        with lock:
+            waiting = iter(range(0))
+        for worker in crew:
+            worker.close()
 
 
 def report(verdicts: list[Verdict], rate: float) -> str:
     """What the scenes came to; every finding with its scene."""
     found = holm(verdicts, rate)
     seeds = sorted({verdict.seed for verdict, _ in found})
-    broken = sorted(v.seed for v in verdicts if v.nonfinite)
     precision = sorted(v.precision for v in verdicts if v.precision > 0)
     lines = [
         f"{len(verdicts)} scenes, {TESTS_OF_SCENE} tests each, family-wise rate {rate:g}, sunfleck {sf.__version__}",
@@ -43,8 +59,9 @@ def report(verdicts: list[Verdict], rate: float) -> str:
         f" frame's mean is {100 * precision[len(precision) // 2]:.2g} % in the median" if precision else "",
         f"{len(seeds)} scenes differ: {seeds}",
     ]  # fmt: skip
-    if broken:
-        lines.append(f"samples that are not finite in scenes {broken}")
+    for verdict in verdicts:
+        if verdict.broken:
+            lines += ["", Case(verdict.seed).describe(), f"  {verdict.broken}"]
     for seed in seeds:
         lines += ["", Case(seed).describe()]
         mine = sorted((f for v, f in found if v.seed == seed), key=lambda f: f.p)
@@ -53,26 +70,26 @@ def report(verdicts: list[Verdict], rate: float) -> str:
     return "\n".join(lines)
 
 
-def _one(seed: int, library: Any) -> int:
+def _one(seed: int, effort: float) -> int:
     print(Case(seed).describe(), flush=True)
-    verdict = judge(seed, library)
-    print(f"first step: least p = {verdict.screen:.1e}; {verdict.nonfinite} samples that are not finite")
+    (verdict,) = judge_all(range(seed, seed + 1), 1, effort)
+    print(f"first step: least p = {verdict.screen:.1e}; {verdict.broken or 'all samples finite'}")
     for finding in verdict.findings:
         print(f"  {finding}")
-    return bool(holm([verdict], 1e-3))
+    return bool(holm([verdict], 1e-3) or verdict.broken)
 
 
-def _many(seeds: range, library: Any, workers: int) -> list[Verdict]:
+def _many(seeds: range, workers: int, effort: float) -> list[Verdict]:
     """The verdicts, told as they come; those so far, where Ctrl-C ends it."""
     verdicts: list[Verdict] = []
     start = time.monotonic()
     print(f"scenes {seeds.start} to {seeds.stop - 1}; Ctrl-C ends with a report", flush=True)
     try:
-        for verdict in judge_all(seeds, library, workers):
+        for verdict in judge_all(seeds, workers, effort):
             verdicts.append(verdict)
             least = min((f.p for f in verdict.findings), default=1.0)
-            if least < 1e-5:
-                print(f"scene {verdict.seed}: p = {least:.1e}", flush=True)
+            if least < 1e-5 or verdict.broken:
+                print(f"scene {verdict.seed}: {verdict.broken or f'p = {least:.1e}'}", flush=True)
             if len(verdicts) % 50 == 0:
                 print(f"{len(verdicts)} scenes, {time.monotonic() - start:.0f} s", flush=True)
     except KeyboardInterrupt:
@@ -87,16 +104,16 @@ def main() -> int:
     parser.add_argument("--scene", type=int, help="the seed of the only one")
     parser.add_argument("--rate", type=float, default=1e-3, help="of false alarms in the whole run")
     parser.add_argument("--workers", type=int, default=2, help="scenes at a time")
+    parser.add_argument("--effort", type=float, default=1.0, help="multiplies the samples of all sides")
     arguments = parser.parse_args()
-    library = load()
     if arguments.scene is not None:
-        return _one(arguments.scene, library)
+        return _one(arguments.scene, arguments.effort)
     seeds = range(arguments.first, arguments.first + arguments.scenes)
-    verdicts = _many(seeds, library, arguments.workers)
+    verdicts = _many(seeds, arguments.workers, arguments.effort)
     if not verdicts:
         return 130
     print(report(verdicts, arguments.rate))
-    return bool(holm(verdicts, arguments.rate) or any(v.nonfinite for v in verdicts))
+    return bool(holm(verdicts, arguments.rate) or any(v.broken for v in verdicts))
 
 
 if __name__ == "__main__":
