@@ -9,14 +9,15 @@
 #include "sunfleck/elementary.h"
 
 /* Distances of density extinction exp(-extinction s), by inversion: a surface at t is reached with
- * the probability exp(-extinction t), the transmittance, and so needs no weight. */
+ * the probability exp(-extinction t), the transmittance, and so needs no weight. A ray that was not
+ * traced has the distance -1, and its coordinate may be no number in [0, 1): it stays a miss. */
 static void drift(sf_batch *b, const sf_scene *scene, uint32_t count) {
     float (*u)[SF_PATHS] = sf_coordinates_by_ray(b, count, 1);
     float mean = 1 / (scene->fog.scattering + scene->fog.absorption);
     uint32_t fog = scene->mesh_table.miss + 1;
     for (uint32_t i = 0; i < sf_whole_packets(count); ++i) {
         float way = -sf_log1m(u[0][i]) * mean;
-        bool scatters = way < b->distance[i];
+        bool scatters = (b->distance[i] > 0) & (way < b->distance[i]);
         b->distance[i] = scatters ? way : b->distance[i];
         b->mesh[i] = scatters ? fog : b->mesh[i];
         for (int c = 0; c < 3; ++c) b->hit_normal[c][i] = scatters ? -b->direction[c][i] : b->hit_normal[c][i];

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import queue
+import signal
 import sys
 import threading
 import time
@@ -106,6 +107,7 @@ def main() -> int:
     parser.add_argument("--workers", type=int, default=2, help="scenes at a time")
     parser.add_argument("--effort", type=float, default=1.0, help="multiplies the samples of all sides")
     arguments = parser.parse_args()
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # shells have what runs in the background ignore it
     if arguments.scene is not None:
         return _one(arguments.scene, arguments.effort)
     seeds = range(arguments.first, arguments.first + arguments.scenes)

@@ -27,7 +27,11 @@ class Worker:
         """The verdict; one that says "crashed" where the process died."""
         if self._process is None:
             self._process = subprocess.Popen(
-                self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+                self._command,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                start_new_session=True,  # Ctrl-C is for the one that reports
             )
         process = self._process
         assert process.stdin is not None
@@ -59,7 +63,4 @@ def _serve(effort: float) -> None:
 
 
 if __name__ == "__main__":
-    try:
-        _serve(float(sys.argv[1]))
-    except KeyboardInterrupt:
-        sys.exit(130)
+    _serve(float(sys.argv[1]))
