@@ -6,7 +6,7 @@
 Welch's test of block means, as Jung, Hanika & Dachsbacher 2020, "Detecting Bias in Monte Carlo Renderers using
 Welch's t-test" (JCGT 9(2)), here over the frame and its sixths rather than over pixels. A scene is judged in two steps
 of independent samples. The first, cheap, asks whether any of its tests has a p-value below `SCREEN`; only then the
-second draws `AGAIN` times as many samples, and only its p-values count. Where one of them is below `CONFIRM` a third step
+second draws `AGAIN` times as many samples, and only its p-values count. Where one is below `CONFIRM` a third step
 repeats it, against heavy tails, and the larger p-value stands. Tests that were not drawn again have p = 1. All this can
 only lower the rate of false alarms, and Holm's correction (1979) over all tests of the run bounds it.
 """
