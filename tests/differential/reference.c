@@ -292,8 +292,9 @@ static double sample_primitive(const primitive *p, vec from, random *r, vec *d, 
         double lowest = cone(p, from);
         if (lowest >= 1) return 0;
         *d = to_world(unit(sub(p->a, from)), on_sphere_cap(r, lowest));
-        *distance = hit_sphere(p, from, *d, 0);
-        return isinf(*distance) ? 0 : light_density(p, from, *d, *distance);
+        *distance = hit_sphere(p, from, *d, 1e-9 * p->b.x);
+        if (isinf(*distance) || dot(facing(p, add(from, times(*distance, *d))), *d) >= 0) return 0; /* on its inside */
+        return light_density(p, from, *d, *distance);
     }
     double u = draw(r), v = draw(r);
     vec point;

@@ -46,6 +46,9 @@ def judge_all(seeds: range, workers: int, effort: float = 1.0) -> Iterator[Verdi
         with lock:
             waiting = iter(range(0))
         for worker in crew:
+            worker.stop()
+        for thread, worker in zip(threads, crew, strict=False):
+            thread.join()
             worker.close()
 
 

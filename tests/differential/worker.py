@@ -47,10 +47,14 @@ class Worker:
         assert isinstance(verdict, Verdict)
         return verdict
 
-    def close(self) -> None:
-        """Ends the process, in the middle of a scene too."""
+    def stop(self) -> None:
+        """Ends the process, in the middle of a scene too; `judge` in another thread then returns."""
         if self._process is not None:
             self._process.kill()
+
+    def close(self) -> None:
+        """Frees what the process has left; after `stop`, and when no thread is in `judge`."""
+        if self._process is not None:
             self._process.communicate()
             self._process = None
 
