@@ -92,7 +92,10 @@ def made(label: str, n: int, d: int, seed: int) -> Array:
 
 
 def exists(label: str, n: int, d: int) -> bool:
-    return sf.valid_counts(PATTERNS[label][0], n, d) == (n, n)
+    try:
+        return sf.valid_counts(PATTERNS[label][0], n, d) == (n, n)
+    except ValueError:  # so many dimensions
+        return False
 
 
 def errors(label: str, n: int, d: int, seeds: int) -> Array:

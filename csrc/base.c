@@ -8,7 +8,6 @@
 #endif
 #include <stdarg.h>
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "error.h"
@@ -56,7 +55,7 @@ sf_isa sf_isa_active(void) {
     const char *asked = getenv("SUNFLECK_ISA");
     if (!asked) return best;
     for (int isa = SF_ISA_BASELINE; isa <= (int)best; ++isa)
-        if (strcmp(asked, sf_isa_name((sf_isa)isa)) == 0) return (sf_isa)isa;
+        if (sf_name_matches(asked, sf_isa_name((sf_isa)isa))) return (sf_isa)isa;
     return best;
 }
 

@@ -7,10 +7,10 @@
 
 #include <float.h>
 #include <math.h>
-#include <string.h>
 
 #include "error.h"
 #include "mapping_kernels.h"
+#include "name.h"
 
 /* What a value must be besides in its interval. */
 typedef enum kind { ANY = 0, WHOLE, DIRECTION } kind;
@@ -117,18 +117,13 @@ const char *sf_mapping_description(sf_mapping mapping) {
     return is_known(mapping) ? entries[mapping].description : NULL;
 }
 
+static const char *name_at(unsigned mapping) { return sf_mapping_name((sf_mapping)mapping); }
+
 sf_status sf_mapping_find(const char *name, sf_mapping *mapping, sf_error *error) {
-    char names[SF_ERROR_MESSAGE_SIZE] = "";
-    for (int m = 0; m < SF_MAPPING_COUNT; ++m) {
-        if (name && strcmp(name, entries[m].name) == 0) {
-            *mapping = (sf_mapping)m;
-            return SF_STATUS_OK;
-        }
-        strncat(names, m ? ", " : "", sizeof names - strlen(names) - 1);
-        strncat(names, entries[m].name, sizeof names - strlen(names) - 1);
-    }
-    return sf_fail(error, SF_STATUS_INVALID_VALUE, "mapping is \"%.40s\"; it must be one of %s", name ? name : "",
-                   names);
+    unsigned index = 0;
+    sf_status status = sf_name_find("mapping", name, name_at, &index, error);
+    if (status == SF_STATUS_OK) *mapping = (sf_mapping)index;
+    return status;
 }
 
 size_t sf_mapping_input_width(sf_mapping mapping) { return is_known(mapping) ? 2 : 0; }

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "name.h"
 #include "platform.h"
 #include "points_set.h"
 
@@ -54,8 +55,10 @@ static const sf_pattern_method methods[SF_PATTERN_COUNT] = {
                                sf_hammersley_make},
     [SF_PATTERN_SOBOL] = {"sobol", "Sobol' sequence with Joe & Kuo's direction numbers, Owen-scrambled (Burley 2020)",
                           SF_SOBOL_MAX_DIMS, COUNT_32, 0, SF_SCRAMBLE_OWEN, NET_SCRAMBLES, sf_net_prepare, sf_net_make},
-    [SF_PATTERN_SZ] = {"sz", "pairs of dimensions are (0, 2)-sequences in base 2, fours (0, 4) in base 4 (Ahmed 2024)",
-                       SF_SZ_MAX_DIMS, COUNT_32, 0, SF_SCRAMBLE_OWEN, NET_SCRAMBLES, sf_net_prepare, sf_net_make},
+    [SF_PATTERN_SZ] =
+        {"sz",
+         "pairs of dimensions are (0, 2)-sequences in base 2, fours (0, 4) in base 4, all 16 (0, 16) (Ahmed 2024)",
+         SF_SZ_MAX_DIMS, COUNT_32, 0, SF_SCRAMBLE_OWEN, NET_SCRAMBLES, sf_net_prepare, sf_net_make},
     [SF_PATTERN_LATTICE] = {"lattice", "rank-1 lattice with Kuo's generating vector; for periodic integrands",
                             SF_LATTICE_MAX_DIMS, ANY_COUNT, 0, SF_SCRAMBLE_NONE, SHIFTED, sf_lattice_prepare,
                             sf_lattice_make},
@@ -94,31 +97,16 @@ const char *sf_scramble_description(sf_scramble scramble) {
 static const char *pattern_name_at(unsigned i) { return sf_pattern_name((sf_pattern)i); }
 static const char *scramble_name_at(unsigned i) { return sf_scramble_name((sf_scramble)i); }
 
-/* Writes the index of `name` among those that `name_at` lists up to NULL, or fails with all. */
-static sf_status find_name(const char *what, const char *name, const char *(*name_at)(unsigned), unsigned *index,
-                           sf_error *error) {
-    for (unsigned i = 0; name && name_at(i); ++i)
-        if (strcmp(name, name_at(i)) == 0) {
-            *index = i;
-            return SF_STATUS_OK;
-        }
-    char names[256] = "";
-    size_t length = 0;
-    for (unsigned i = 0; name_at(i) && length < sizeof names; ++i)
-        length += (size_t)snprintf(names + length, sizeof names - length, "%s%s", i ? ", " : "", name_at(i));
-    return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s is \"%.64s\"; choose one of %s", what, name ? name : "", names);
-}
-
 sf_status sf_pattern_find(const char *name, sf_pattern *pattern, sf_error *error) {
     unsigned index = 0;
-    sf_status status = find_name("pattern", name, pattern_name_at, &index, error);
+    sf_status status = sf_name_find("pattern", name, pattern_name_at, &index, error);
     if (status == SF_STATUS_OK) *pattern = (sf_pattern)index;
     return status;
 }
 
 sf_status sf_scramble_find(const char *name, sf_scramble *scramble, sf_error *error) {
     unsigned index = 0;
-    sf_status status = find_name("scramble", name, scramble_name_at, &index, error);
+    sf_status status = sf_name_find("scramble", name, scramble_name_at, &index, error);
     if (status == SF_STATUS_OK) *scramble = (sf_scramble)index;
     return status;
 }
@@ -129,6 +117,22 @@ uint32_t sf_pattern_max_dims(sf_pattern pattern) { return methods[pattern].max_d
 uint64_t sf_pattern_max_count(sf_pattern pattern) { return methods[pattern].max_count; }
 int sf_pattern_needs_total(sf_pattern pattern) { return methods[pattern].needs_total; }
 sf_scramble sf_pattern_default_scramble(sf_pattern pattern) { return methods[pattern].default_scramble; }
+int sf_pattern_is_random(sf_pattern pattern) {
+    switch (pattern) {
+        case SF_PATTERN_RANDOM:
+        case SF_PATTERN_JITTERED:
+        case SF_PATTERN_LATIN:
+        case SF_PATTERN_MULTIJITTERED:
+        case SF_PATTERN_ORTHOGONAL: return 1;
+        default: return 0;
+    }
+}
+sf_scramble sf_pattern_random_scramble(sf_pattern pattern) {
+    if (methods[pattern].default_scramble != SF_SCRAMBLE_NONE) return methods[pattern].default_scramble;
+    for (int s = SF_SCRAMBLE_NONE + 1; s < SF_SCRAMBLE_COUNT; ++s)
+        if (sf_pattern_takes_scramble(pattern, (sf_scramble)s)) return (sf_scramble)s;
+    return SF_SCRAMBLE_NONE;
+}
 int sf_pattern_takes_scramble(sf_pattern pattern, sf_scramble scramble) {
     return scramble == SF_SCRAMBLE_DEFAULT || (methods[pattern].scrambles >> scramble & 1u);
 }
@@ -137,8 +141,14 @@ sf_status sf_points_check_pattern(sf_pattern pattern, uint32_t dims, sf_error *e
     if ((unsigned)pattern >= SF_PATTERN_COUNT || !methods[pattern].name)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "pattern is %d; patterns are 0 .. %d", (int)pattern,
                        SF_PATTERN_COUNT - 1);
+    if (pattern == SF_PATTERN_SZ && dims > SF_SZ_MAX_DIMS)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE,
+                       "d is %" PRIu32
+                       "; sz has 1 .. %u dimensions, beyond which pairs repeat one another: give pad 2 or "
+                       "4 for more, or take sobol",
+                       dims, SF_SZ_MAX_DIMS);
     if (dims < 1 || dims > methods[pattern].max_dims)
-        return sf_fail(error, SF_STATUS_INVALID_VALUE, "dims is %" PRIu32 "; %s has 1 .. %" PRIu32 " dimensions", dims,
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "d is %" PRIu32 "; %s has 1 .. %" PRIu32 " dimensions", dims,
                        methods[pattern].name, methods[pattern].max_dims);
     return SF_STATUS_OK;
 }
@@ -146,7 +156,7 @@ sf_status sf_points_check_pattern(sf_pattern pattern, uint32_t dims, sf_error *e
 sf_status sf_points_check_dims(const sf_points_options *options, sf_error *error) {
     if (options->pad == 0 || options->dims == 0) return sf_points_check_pattern(options->pattern, options->dims, error);
     if (options->dims > SF_POINTS_MAX_DIMS)
-        return sf_fail(error, SF_STATUS_INVALID_VALUE, "dims is %" PRIu32 "; padded sets have 1 .. %u dimensions",
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "d is %" PRIu32 "; padded sets have 1 .. %u dimensions",
                        options->dims, SF_POINTS_MAX_DIMS);
     return sf_points_check_pattern(options->pattern, 1, error); /* the set's own few dimensions every net has */
 }

@@ -52,7 +52,7 @@ static void search_products(nearest *best, uint64_t product, uint32_t left, uint
         uint64_t p = product * side, low = saturating_power(side, left - 1), high = saturating_power(most, left - 1);
         if (p > MAX_CELLS / low || (best->above && p * low > best->above)) return;
         if (high <= MAX_CELLS / p && p * high < best->below) continue;
-        if (best->below == best->n) return;
+        if (best->below && best->below == best->n) return;
         search_products(best, p, left - 1, side, most);
     }
 }
@@ -129,7 +129,7 @@ static int find_sides(uint64_t n, uint32_t dims, uint32_t *sides) {
 
 sf_status sf_grid_sides(uint64_t n, uint32_t dims, uint32_t *sides, sf_error *error) {
     if (dims < 1 || dims > SF_POINTS_MAX_DIMS)
-        return sf_fail(error, SF_STATUS_INVALID_VALUE, "dims is %" PRIu32 "; it is 1 .. %u", dims, SF_POINTS_MAX_DIMS);
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "d is %" PRIu32 "; it is 1 .. %u", dims, SF_POINTS_MAX_DIMS);
     if (n >= 1 && n <= MAX_CELLS && find_sides(n, dims, sides)) return SF_STATUS_OK;
     nearest best = nearest_counts(n, dims);
     char nearby[96];

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "name.h"
 #include "rng_lcg.h"
 #include "rng_methods.h"
 
@@ -58,18 +59,13 @@ const char *sf_rng_description(sf_rng_kind kind) {
 
 unsigned sf_rng_native_bits(sf_rng_kind kind) { return (unsigned)kind < SF_RNG_COUNT ? methods[kind]->native_bits : 0; }
 
+static const char *name_at(unsigned kind) { return sf_rng_name((sf_rng_kind)kind); }
+
 sf_status sf_rng_find(const char *name, sf_rng_kind *kind, sf_error *error) {
-    for (unsigned k = 0; k < SF_RNG_COUNT; ++k)
-        if (strcmp(name, methods[k]->name) == 0) {
-            *kind = (sf_rng_kind)k;
-            return SF_STATUS_OK;
-        }
-    char names[SF_ERROR_MESSAGE_SIZE] = "";
-    for (unsigned k = 0; k < SF_RNG_COUNT; ++k) {
-        size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, "%s%s", k ? ", " : "", methods[k]->name);
-    }
-    return sf_fail(error, SF_STATUS_INVALID_VALUE, "no generator is called '%.64s'; there are %s", name, names);
+    unsigned index = 0;
+    sf_status status = sf_name_find("generator", name, name_at, &index, error);
+    if (status == SF_STATUS_OK) *kind = (sf_rng_kind)index;
+    return status;
 }
 
 /* `parameters` are an LCG's, and NULL for all others. */

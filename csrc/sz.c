@@ -7,6 +7,8 @@
  * Binary-Based (0, 2^q)-Sequences", found such families by search; here is a derivation, whose
  * matrices are not theirs.
  *
+ * Only the first sixteen are given out: in steps of 16 matrices are alike to 2^8 points.
+ *
  * Let F be the field of 2^q elements, q = 2^r, and read the index in digits of q bits as the
  * polynomial f(t) whose coefficient of t^J is digit J. For a in F let P(a) be the linear map from
  * f(t) to f(t + a), whose matrix is Pascal's, entry (I, J) being binom(J, I) a^(J-I): the digits

@@ -7,10 +7,9 @@
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "error.h"
+#include "name.h"
 #include "platform.h"
 #include "share.h"
 #include "uniformity_parts.h"
@@ -60,17 +59,13 @@ const char *sf_discrepancy_kind_description(sf_discrepancy_kind kind) {
     return (unsigned)kind < SF_DISCREPANCY_KIND_COUNT ? kinds[kind].description : NULL;
 }
 
+static const char *name_at(unsigned kind) { return sf_discrepancy_kind_name((sf_discrepancy_kind)kind); }
+
 sf_status sf_discrepancy_kind_find(const char *name, sf_discrepancy_kind *kind, sf_error *error) {
-    char names[128] = "";
-    int length = 0;
-    for (int k = 0; k < SF_DISCREPANCY_KIND_COUNT; ++k) {
-        if (name && strcmp(name, kinds[k].name) == 0) {
-            *kind = (sf_discrepancy_kind)k;
-            return SF_STATUS_OK;
-        }
-        length += snprintf(names + length, sizeof names - (size_t)length, "%s%s", k ? ", " : "", kinds[k].name);
-    }
-    return sf_fail(error, SF_STATUS_INVALID_VALUE, "kind is \"%.64s\"; choose one of %s", name ? name : "", names);
+    unsigned index = 0;
+    sf_status status = sf_name_find("kind", name, name_at, &index, error);
+    if (status == SF_STATUS_OK) *kind = (sf_discrepancy_kind)index;
+    return status;
 }
 
 /* ---- points ---- */
@@ -204,7 +199,7 @@ sf_status sf_discrepancy(sf_discrepancy_kind kind, const double *points, size_t 
     double square = mean - 2.0 * singles / n + pairs / n / n;
     if (!(fabs(square) <= DBL_MAX) || mean < DBL_MIN)
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
-                       "dims is %" PRIu32 "; the terms of the %s discrepancy of so many are beyond a double", dims,
+                       "d is %" PRIu32 "; the terms of the %s discrepancy of so many are beyond a double", dims,
                        kinds[kind].name);
     *value = kind != SF_DISCREPANCY_L2_STAR ? square : square > 0.0 ? sqrt(square) : 0.0;
     return SF_STATUS_OK;

@@ -142,6 +142,15 @@ void bind_points(nb::module_ &m) {
         "pattern"_a, "dims"_a, "n"_a);
 
     m.def(
+        "pattern_random_scramble",
+        [](const std::string &name) { return sf_scramble_name(sf_pattern_random_scramble(find_pattern(name))); },
+        "pattern"_a);
+
+    m.def(
+        "pattern_is_random", [](const std::string &name) { return sf_pattern_is_random(find_pattern(name)) != 0; },
+        "pattern"_a);
+
+    m.def(
         "pattern_needs_total", [](const std::string &name) { return sf_pattern_needs_total(find_pattern(name)) != 0; },
         "pattern"_a);
 }

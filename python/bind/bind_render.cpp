@@ -163,7 +163,7 @@ Enum find(const char *what, const std::string &name, const char *(*name_of)(Enum
     for (int k = 0;; ++k) {
         const char *known = name_of(static_cast<Enum>(k));
         if (!known) break;
-        if (name == known) return static_cast<Enum>(k);
+        if (sf_name_matches(name.c_str(), known)) return static_cast<Enum>(k);
         allowed += (k ? ", " : "") + std::string(known);
     }
     std::string message = std::string(what) + " is '" + name + "'; it must be one of " + allowed;

@@ -311,7 +311,9 @@ void bind_scene(nb::module_ &m) {
             [](scene_handle &self, const std::string &name) {
                 int k = 0;
                 const char *known;
-                while ((known = sf_light_sampling_name(static_cast<sf_light_sampling>(k))) && name != known) ++k;
+                while ((known = sf_light_sampling_name(static_cast<sf_light_sampling>(k))) &&
+                       !sf_name_matches(name.c_str(), known))
+                    ++k;
                 if (!known)
                     throw nb::value_error(("light_sampling is '" + name + "'; give both, light or surface").c_str());
                 call([&](sf_error *error) {
@@ -324,7 +326,9 @@ void bind_scene(nb::module_ &m) {
             [](scene_handle &self, const std::string &name) {
                 int k = 0;
                 const char *known;
-                while ((known = sf_light_choice_name(static_cast<sf_light_choice>(k))) && name != known) ++k;
+                while ((known = sf_light_choice_name(static_cast<sf_light_choice>(k))) &&
+                       !sf_name_matches(name.c_str(), known))
+                    ++k;
                 if (!known) throw nb::value_error(("light_choice is '" + name + "'; give auto, power or tree").c_str());
                 call([&](sf_error *error) {
                     return sf_scene_set_light_choice(self.scene, static_cast<sf_light_choice>(k), error);

@@ -497,7 +497,7 @@ static void test_names_lead_back_to_their_mappings(void **state) {
     assert_null(sf_mapping_description(SF_MAPPING_COUNT));
     assert_int_equal(sf_mapping_output_width(SF_MAPPING_COUNT), 0);
     expect_refused(sf_mapping_find("disc", &found, &error), &error, "disk_polar");
-    expect_refused(sf_mapping_find(NULL, &found, &error), &error, "must be one of");
+    expect_refused(sf_mapping_find(NULL, &found, &error), &error, "choose one of");
 }
 
 static void test_every_mapping_has_a_case(void **state) {

@@ -103,40 +103,24 @@ static void assert_zero_sequence(sf_pattern pattern, uint32_t dimension, int dim
 
 static void test_sz_pairs_are_zero_two_sequences_in_base_two(void **state) {
     (void)state;
-    for (uint32_t d = 0; d < 1024; d += 2) assert_zero_sequence(SF_PATTERN_SZ, d, 2, 1, 32);
-    for (uint32_t d = 1024; d < SF_SZ_MAX_DIMS; d += 1022) assert_zero_sequence(SF_PATTERN_SZ, d, 2, 1, 32);
-    assert_zero_sequence(SF_PATTERN_SZ, SF_SZ_MAX_DIMS - 2, 2, 1, 32);
+    for (uint32_t d = 0; d < SF_SZ_MAX_DIMS; d += 2) assert_zero_sequence(SF_PATTERN_SZ, d, 2, 1, 32);
 }
 
 static void test_sz_fours_are_zero_four_sequences_in_base_four(void **state) {
     (void)state;
-    for (uint32_t d = 0; d < 16; d += 4) assert_zero_sequence(SF_PATTERN_SZ, d, 4, 2, 16);
-    for (uint32_t d = 1024; d < SF_SZ_MAX_DIMS; d += 8200) assert_zero_sequence(SF_PATTERN_SZ, d, 4, 2, 10);
-    assert_zero_sequence(SF_PATTERN_SZ, SF_SZ_MAX_DIMS - 4, 4, 2, 16);
+    for (uint32_t d = 0; d < SF_SZ_MAX_DIMS; d += 4) assert_zero_sequence(SF_PATTERN_SZ, d, 4, 2, 16);
 }
 
-static void test_sz_sixteens_are_zero_sixteen_sequences_in_base_sixteen(void **state) {
+static void test_sz_sixteen_are_a_zero_sixteen_sequence_in_base_sixteen(void **state) {
     (void)state;
     assert_zero_sequence(SF_PATTERN_SZ, 0, 16, 4, 4);
-    assert_zero_sequence(SF_PATTERN_SZ, 16, 16, 4, 3);
-    assert_zero_sequence(SF_PATTERN_SZ, SF_SZ_MAX_DIMS - 16, 16, 4, 3);
-}
-
-static void test_sz_dimensions_of_256_share_two_digits_in_base_256(void **state) {
-    (void)state; /* pairs, across the sixteens: with one byte of each, and two of one */
-    for (uint32_t a = 0; a < 256; a += 5)
-        for (uint32_t b = a + 1; b < 256; b += 7) {
-            uint32_t rows[2][32], chosen[32] = {0};
-            matrix_rows(SF_PATTERN_SZ, 512 + a, rows[0]);
-            matrix_rows(SF_PATTERN_SZ, 512 + b, rows[1]);
-            for (int total = 1; total <= 4; ++total) assert_true(fills_intervals(rows, 2, 8, total, total, chosen, 0));
-        }
 }
 
 static void test_every_dimension_alone_is_a_zero_one_sequence(void **state) {
     (void)state; /* distinct indices then have distinct words, which the scrambles rely on */
     for (uint32_t d = 0; d < SF_SOBOL_MAX_DIMS; d += d < 200 ? 1 : 97)
-        for (int net = 0; net < NETS; ++net) assert_zero_sequence(nets[net], d, 1, 1, 32);
+        for (int net = 0; net < NETS; ++net)
+            if (d < sf_pattern_max_dims(nets[net])) assert_zero_sequence(nets[net], d, 1, 1, 32);
 }
 
 /* ---- elementary intervals of the floats ---- */
@@ -267,7 +251,7 @@ static void test_fills_are_the_stateless_samples(void **state) {
     static const uint32_t dims[] = {1, 2, 3, 16, 300, 2100};
     for (int net = 0; net < NETS; ++net)
         for (int s = 0; s < SCRAMBLES; ++s)
-            for (int d = 0; d < 6; ++d) {
+            for (int d = 0; d < 6 && dims[d] <= sf_pattern_max_dims(nets[net]); ++d) {
                 sf_points_options o = options_for(nets[net], scrambles[s], dims[d], 77);
                 assert_fills_are_the_samples(&o, 0, dims[d] > 16 ? 20 : 2500);
                 assert_fills_are_the_samples(&o, 1021, dims[d] > 16 ? 7 : 60);
@@ -436,7 +420,7 @@ static void test_bad_options_are_named(void **state) {
     o.pad = 2;
     assert_refused(&o, "random");
     o = options_for(SF_PATTERN_SZ, SF_SCRAMBLE_OWEN, SF_SZ_MAX_DIMS + 1, 0);
-    assert_refused(&o, "65536");
+    assert_refused(&o, "d is 17; sz has 1 .. 16 dimensions");
     o = options_for(SF_PATTERN_SOBOL, SF_SCRAMBLE_OWEN, SF_SOBOL_MAX_DIMS + 1, 0);
     assert_refused(&o, "21201");
     o = options_for(SF_PATTERN_SZ, SF_SCRAMBLE_PERMUTED, 2, 0);
@@ -451,8 +435,7 @@ int main(void) {
         cmocka_unit_test(test_sobol_starts_with_the_published_points),
         cmocka_unit_test(test_sz_pairs_are_zero_two_sequences_in_base_two),
         cmocka_unit_test(test_sz_fours_are_zero_four_sequences_in_base_four),
-        cmocka_unit_test(test_sz_sixteens_are_zero_sixteen_sequences_in_base_sixteen),
-        cmocka_unit_test(test_sz_dimensions_of_256_share_two_digits_in_base_256),
+        cmocka_unit_test(test_sz_sixteen_are_a_zero_sixteen_sequence_in_base_sixteen),
         cmocka_unit_test(test_every_dimension_alone_is_a_zero_one_sequence),
         cmocka_unit_test(test_every_scramble_keeps_the_t_value_of_every_pair_and_block),
         cmocka_unit_test(test_padded_sets_keep_their_intervals_and_differ),

@@ -54,6 +54,10 @@ typedef struct sf_error {
 /* "ok", "invalid value", … ; never NULL. */
 const char *sf_status_name(sf_status status);
 
+/* Whether `name` is the one `known`, upper and lower case of ASCII being alike; 0 where one is NULL.
+ * Every look-up by name in the library compares so. */
+int sf_name_matches(const char *name, const char *known);
+
 /* The instruction-set level at which bulk kernels run. The core's results are the same bits
  * on every level. */
 typedef enum sf_isa { SF_ISA_BASELINE = 0, SF_ISA_AVX2, SF_ISA_AVX512 } sf_isa;

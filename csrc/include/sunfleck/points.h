@@ -11,7 +11,10 @@
  * bits are that word too, and its further 21 bits continue it. Where a pattern has strata or
  * elementary intervals whose borders are not multiples of 2^-24, the word is rounded so that the
  * float still lies inside its own. (Of halton and hammersley, float and double are rounded each by
- * itself: the double is the exact fraction to 53 bits, the float may be 2^-24 above its top bits.)
+ * itself: the double is the exact fraction to 53 bits; the word is the float's, which may be 2^-24
+ * above the double's top bits.)
+ *
+ * Messages call `dims` d, as formulas do.
  */
 #ifndef SUNFLECK_POINTS_H
 #define SUNFLECK_POINTS_H
@@ -26,7 +29,7 @@ extern "C" {
 
 #define SF_SOBOL_MAX_DIMS 21201u /* Joe & Kuo's table */
 #define SF_HALTON_MAX_DIMS 6542u /* the primes below 2^16; hammersley has one more */
-#define SF_SZ_MAX_DIMS 65536u    /* the nimbers below 2^16 */
+#define SF_SZ_MAX_DIMS 16u       /* of one (0, 16)-sequence; pad makes more of the first four */
 #define SF_ORTHOGONAL_MAX_DIMS 4097u
 #define SF_LATTICE_MAX_DIMS 4391u /* of Kuo's generating vector */
 #define SF_POINTS_MAX_DIMS 65536u /* of the patterns without a table */
@@ -46,7 +49,7 @@ typedef enum sf_pattern {
     SF_PATTERN_HAMMERSLEY,    /* i / n, and halton in the other dimensions; needs its total */
     SF_PATTERN_SOBOL,         /* Joe & Kuo's direction numbers, in the natural order of the index */
     SF_PATTERN_SZ,            /* (0, 2)-sequences in base 2 side by side; four dimensions a (0, 4)-sequence
-                                 in base 4, sixteen (0, 16) in base 16, … (after Ahmed et al. 2024) */
+                                 in base 4, sixteen (0, 16) in base 16 (after Ahmed et al. 2024) */
     SF_PATTERN_LATTICE,       /* rank-1 lattice in the order of the radical inverse in base 2, Kuo's
                                  generating vector for 2^10 .. 2^20 points (Cools, Kuo & Nuyens
                                  2006); beyond, it gets hardly better */
@@ -91,6 +94,12 @@ uint32_t sf_pattern_max_dims(sf_pattern pattern);
 uint64_t sf_pattern_max_count(sf_pattern pattern); /* UINT64_MAX: no limit but the index's type */
 int sf_pattern_needs_total(sf_pattern pattern);
 sf_scramble sf_pattern_default_scramble(sf_pattern pattern);
+/* The scramble for one who wants a random set whatever the pattern: the default where that uses the
+ * seed, else the first that the pattern takes: shift for lattice and r2, permuted for hammersley;
+ * SF_SCRAMBLE_NONE where there is none, of patterns that are random by nature and of uniform. */
+sf_scramble sf_pattern_random_scramble(sf_pattern pattern);
+/* Whether the pattern without a scramble still depends on the seed. */
+int sf_pattern_is_random(sf_pattern pattern);
 int sf_pattern_takes_scramble(sf_pattern pattern, sf_scramble scramble);
 
 /* The nearest counts that the pattern takes at or below n and at or above it; 0 where there is
