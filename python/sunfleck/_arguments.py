@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -99,6 +99,19 @@ def text(name: str, value: Any) -> str:
     return value
 
 
+def choice(name: str, value: Any, allowed: Iterable[str], lead: str = "choose one of") -> str:
+    """The one of the allowed names that a string is, upper and lower case being alike."""
+    names = tuple(allowed)
+    given = text(name, value)
+    for known in names:
+        if given == known:
+            return known
+    for known in names:
+        if given.lower() == known.lower():
+            return known
+    raise ValueError(f"{name} is {given!r}; {lead} {', '.join(names)}")
+
+
 def one_of(name: str, value: DTypeLike, allowed: Sequence[str]) -> np.dtype[Any]:
     """A dtype among those allowed."""
     if isinstance(value, str) and value in allowed:
@@ -134,6 +147,15 @@ def real_array(name: str, value: ArrayLike, dtype: np.dtype[Any] | None) -> NDAr
     if dtype is None:
         dtype = np.dtype(np.float32 if array.dtype == np.float32 else np.float64)
     return np.require(array, dtype, ["C", "A"])
+
+
+def output_dtype(dtype: DTypeLike | None, out: NDArray[Any] | None, allowed: Sequence[str]) -> np.dtype[Any]:
+    """The dtype asked for, else that of `out`, else the first of those allowed."""
+    if dtype is not None:
+        return one_of("dtype", dtype, allowed)
+    if isinstance(out, np.ndarray):
+        return one_of("out's dtype", out.dtype, allowed)
+    return np.dtype(allowed[0])
 
 
 def output_array(out: NDArray[Any] | None, shape: tuple[int, ...], dtype: np.dtype[Any]) -> NDArray[Any]:

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 import sunfleck as sf
 from sunfleck import _core
+from sunfleck._arguments import choice
 from sunfleck._files import ending, replacing, writable_target
 from sunfleck.cli_chart import add_chart
 from sunfleck.cli_gallery import add_gallery
@@ -209,10 +210,8 @@ def _exposure(text: str | None, outputs: Sequence[str]) -> float | str | None:
 
 def _heatmaps(names: str, output: str) -> dict[str, Path]:
     """Where each heat map goes: beside the first picture. Refused now rather than after the work."""
-    wanted = [name.strip() for name in names.split(",") if name.strip()]
-    for name in wanted:
-        if name not in HEATMAPS:
-            raise ValueError(f"--heatmap is {name!r}; heat maps are drawn of {', '.join(HEATMAPS)}")
+    given = [name.strip() for name in names.split(",") if name.strip()]
+    wanted = [choice("--heatmap", name, HEATMAPS, "heat maps are drawn of") for name in given]
     paths = {name: Path(output).with_suffix(f".{name}.png") for name in wanted}
     for path in paths.values():
         writable_target(path, "figures", FIGURE_TYPES)

@@ -11,6 +11,7 @@ import sys
 from typing import Any
 
 import sunfleck as sf
+from sunfleck._arguments import choice
 from sunfleck._files import ending, writable_target
 from sunfleck.scenes import SCENES
 
@@ -71,9 +72,8 @@ def add_chart(commands: argparse._SubParsersAction[Any]) -> None:
 
 
 def _run(given: argparse.Namespace) -> int:
+    given.kind = choice("KIND", given.kind, _KINDS)
     outputs = [*(given.output or [f"{given.kind}.png"]), *([given.html] if given.html else [])]
-    if given.kind not in _KINDS:
-        raise ValueError(f"there is no chart of {given.kind!r}; give one of {', '.join(_KINDS)}")
     chart = sf.chart.KINDS[given.kind]
     numbers = outputs[0][: len(outputs[0]) - len(ending(outputs[0]))]
     _refuse_early(outputs, given.html, f"{numbers}.csv")

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sunfleck import _core
+from sunfleck._arguments import choice
 from sunfleck.figure import COLORS, Figure, bare_figure
 
 __all__ = ["HEATMAPS", "heatmap"]
@@ -159,8 +160,7 @@ def heatmap(channels: Mapping[str, NDArray[Any]], channel: str, metadata: Mappin
     sunfleck.Error
         matplotlib is not installed.
     """
-    if channel not in HEATMAPS:
-        raise ValueError(f"channel is {channel!r}; heat maps are drawn of {', '.join(HEATMAPS)}")
+    channel = choice("channel", channel, HEATMAPS, "heat maps are drawn of")
     values = channels[channel]
     height, width = values.shape
     x0, y0 = (int(word) for word in metadata["crop"].split()[:2])

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sunfleck import _core
 from sunfleck._arguments import array_of, integer, number, text
+from sunfleck._seed import UNSET, Unset, seed_from
 from sunfleck.tolerance import Tolerance
 
 __all__ = ["Integral", "IntegralLook", "integrate"]
@@ -107,8 +108,9 @@ def integrate(
     replicates: int = 16,
     value_range: Sequence[float] | None = None,
     scramble: str | None = "default",
-    seed: int = 0,
+    seed: Any = 0,
     threads: int | None = 1,
+    rng: Any | Unset = UNSET,
 ) -> Integral:
     """Integrates a function over [0,1)^d to a tolerance at a confidence.
 
@@ -138,11 +140,14 @@ def integrate(
     scramble : str or None
         As in `points`. Where it leaves the pattern, or a coordinate, where it is (None does),
         each replicate is shifted at random, modulo 1.
-    seed : int
-        In [0, 2^64).
+    seed : int, None, numpy.random.Generator, numpy.random.SeedSequence or Rng
+        As in `points`: an int in [0, 2^64), or a source of 64 bits that is advanced by them. None:
+        from the system.
     threads : int, optional
         That make the points; f is called on the caller's thread. None: one for each processor.
         Changes no bit.
+    rng : optional
+        Another name of `seed`, as SciPy and NumPy have it. Give one of them.
 
     Returns
     -------
@@ -202,7 +207,7 @@ def integrate(
         pattern=text("pattern", pattern),
         scramble="none" if scramble is None else text("scramble", scramble),
         dims=integer("d", d, bits=32),
-        seed=integer("seed", seed),
+        seed=seed_from(seed, rng),
         absolute=tolerance.absolute,
         relative=tolerance.relative,
         confidence=confidence,

@@ -11,7 +11,8 @@ from typing import Any
 from numpy.typing import DTypeLike, NDArray
 
 from sunfleck import _core
-from sunfleck._arguments import check_size, integer, one_of, output_array, text
+from sunfleck._arguments import check_size, integer, output_array, output_dtype, text
+from sunfleck._seed import UNSET, Unset, seed_from
 
 __all__ = ["PATTERNS", "SCRAMBLES", "points", "valid_counts"]
 
@@ -27,14 +28,15 @@ def points(
     n: int,
     d: int = 2,
     *,
-    seed: int = 0,
+    seed: Any = 0,
     scramble: str | None = "default",
     pad: int = 0,
     start: int = 0,
     total: int | None = None,
-    dtype: DTypeLike = "float32",
+    dtype: DTypeLike | None = None,
     threads: int | None = None,
     out: NDArray[Any] | None = None,
+    rng: Any | Unset = UNSET,
 ) -> NDArray[Any]:
     """Points ``start`` to ``start + n - 1`` of a pattern in [0,1)^d.
 
@@ -44,15 +46,16 @@ def points(
     Parameters
     ----------
     pattern : str
-        One of `sunfleck.PATTERNS`.
+        One of `sunfleck.PATTERNS`. Names are the same in upper and lower case.
     n : int
         How many points. uniform, jittered, multijittered and orthogonal take some counts only,
         see `valid_counts`: of `total`, where that is given.
     d : int
-        Dimensions of a point, at least 1; at most 21,201 for sobol, 65,536 for sz and where `pad`
+        Dimensions of a point, at least 1; at most 21,201 for sobol, 16 for sz, 65,536 where `pad`
         is given, 6,542 for halton, 4,391 for lattice, sqrt(n) + 1 for orthogonal.
-    seed : int
-        In [0, 2^64).
+    seed : int, None, numpy.random.Generator, numpy.random.SeedSequence or Rng
+        An int in [0, 2^64). From another source 64 bits are taken, and it is advanced by that: the
+        next call with it gets other points. None: from the system, so that no two calls agree.
     scramble : str or None
         One of `sunfleck.SCRAMBLES` that the pattern takes: "shift", "lms", "owen", "nested"
         (sobol, sz), "permuted", "owen" (halton, hammersley), "shift" (lattice, r2), "default"
@@ -68,12 +71,16 @@ def points(
         uniform, jittered, latin, multijittered, orthogonal and hammersley differ by it, so that
         parts of one set are made with the same `total`. The others do not, and only refuse
         points beyond it. None: ``start + n``.
-    dtype : "float32", "float64" or "uint32"
-        24 or 53 bits a value, or the 32-bit words that the floats come from.
+    dtype : "float32", "float64" or "uint32", optional
+        24 or 53 bits a value, or the 32-bit words that the float32 come from. None: that of ``out``,
+        else float32.
     threads : int, optional
         How many to use, at least 1. None: one for each processor. Changes no bit.
     out : ndarray, optional
-        Filled in place: shape (n, d), of this dtype, C-contiguous.
+        Filled in place: shape (n, d), of the dtype, C-contiguous.
+    rng : optional
+        Another name of `seed`, as SciPy and NumPy have it; integers from 2^64 on are hashed. Give
+        one of them.
 
     Returns
     -------
@@ -118,18 +125,18 @@ def points(
     """
     n, start = integer("n", n), integer("start", start)
     d = integer("d", d, bits=32)
-    kind = one_of("dtype", dtype, ("float32", "float64", "uint32"))
+    kind = output_dtype(dtype, out, ("float32", "float64", "uint32"))
     if total is not None and integer("total", total) == 0:  # C's word for start + n
         raise ValueError("total is 0; give at least 1, or None for start + n")
     if threads is not None and integer("threads", threads, bits=32) == 0:  # C's word for all processors
         raise ValueError("threads is 0; give at least 1, or None for one for each processor")
-    pattern, seed, pad = text("pattern", pattern), integer("seed", seed), integer("pad", pad, bits=32)
+    pattern, pad, key = text("pattern", pattern), integer("pad", pad, bits=32), seed_from(seed, rng)
     scramble = "none" if scramble is None else text("scramble", scramble)
     shape = (n, d)
     check_size("(n, d)", shape)
     array = output_array(out, shape, kind)
-    _core.fill_points(array, pattern, scramble, d, pad, seed, start, total or 0, threads or 0)
-    if pattern in ("sobol", "sz") and n and (n & (n - 1) or start % n):
+    _core.fill_points(array, pattern, scramble, d, pad, key, start, total or 0, threads or 0)
+    if pattern.lower() in ("sobol", "sz") and n and (n & (n - 1) or start % n):
         warnings.warn(
             f"{n} points from {start} on are not an aligned block of a power of two of {pattern}'s "
             "sequence: they lose its balance",

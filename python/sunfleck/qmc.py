@@ -9,8 +9,6 @@ Needs SciPy, which nothing else here does; ``sunfleck.qmc`` is imported when it 
 from __future__ import annotations
 
 import inspect
-import operator
-import secrets
 from typing import Any
 
 import numpy as np
@@ -18,8 +16,8 @@ from numpy.typing import NDArray
 
 from sunfleck import _core
 from sunfleck._arguments import integer, text
+from sunfleck._seed import seed_of
 from sunfleck.points import points
-from sunfleck.rng import Rng
 
 try:
     from scipy.stats import qmc as _qmc
@@ -30,26 +28,6 @@ __all__ = ["Engine"]
 
 # SciPy 1.15 renamed the argument; the old name still works, and is to warn one day.
 _RNG = "rng" if "rng" in inspect.signature(_qmc.QMCEngine.__init__).parameters else "seed"
-
-
-def _seed_of(source: Any) -> int:
-    """64 bits from whatever SciPy takes as a source of randomness."""
-    if source is None:
-        return secrets.randbits(64)
-    if isinstance(source, Rng):
-        return int(source.bits(1, dtype="uint64")[0])
-    if isinstance(source, np.random.SeedSequence):
-        return int(source.generate_state(1, np.uint64)[0])
-    if not isinstance(source, (np.random.Generator, np.random.RandomState)):
-        try:
-            number = operator.index(source)
-        except TypeError:
-            source = np.random.default_rng(source)
-        else:
-            if number < 0:
-                raise ValueError(f"the seed is {number}; give 0 or more")
-            return number if number < 1 << 64 else _seed_of(np.random.SeedSequence(number))
-    return int.from_bytes(source.bytes(8), "little")
 
 
 def _aligned_blocks(start: int, n: int) -> list[tuple[int, int]]:
@@ -74,7 +52,9 @@ class Engine(_qmc.QMCEngine):  # type: ignore[misc]
     d : int
         Dimensions of a point; 0 is allowed, as SciPy has it.
     scramble : str, bool or None
-        As `sunfleck.points` takes it; True is "default", False is None.
+        As `sunfleck.points` takes it; False is None. True randomizes whatever the pattern: the default
+        scramble, "shift" for lattice and r2, "permuted" for hammersley, which have none by default;
+        uniform, which can't be, is refused.
     pad : int
         As `sunfleck.points` takes it.
     total : int, optional
@@ -86,8 +66,8 @@ class Engine(_qmc.QMCEngine):  # type: ignore[misc]
         As `scipy.stats.qmc.QMCEngine` has it. Both move points, and break nets and strata.
     rng, seed : optional
         The source of randomness, under either name: an int is the pattern's seed itself below 2^64
-        and is hashed above; a `sunfleck.Rng`, NumPy generator, or seed sequence gives 64 bits and
-        is advanced by it; None takes them from the system.
+        and is hashed above; a `sunfleck.Rng` or NumPy generator gives 64 bits and is advanced by
+        them, a seed sequence spawns a child that does; None takes them from the system.
 
     Attributes
     ----------
@@ -116,9 +96,9 @@ class Engine(_qmc.QMCEngine):  # type: ignore[misc]
     -----
     `random`, `integers`, `reset` and `fast_forward` are SciPy's; ``workers`` is the number of
     threads (-1: one for each processor) and changes no bit. Skipping a sequence costs nothing.
-    With ``total`` the set is made at once and kept: total · d · 8 bytes. Patterns that
-    use no seed repeat themselves in every independent set, so that an error estimated from such
-    sets is 0. Not safe to share between threads, as SciPy's.
+    With ``total`` the set is made at once and kept: total · d · 8 bytes. `qmc_quad` randomizes the
+    further engines that it makes of a plain one; but uniform repeats itself in every set, so that an
+    error estimated from such sets is 0. Not safe to share between threads, as SciPy's.
 
     Examples
     --------
@@ -150,14 +130,16 @@ class Engine(_qmc.QMCEngine):  # type: ignore[misc]
         if rng is not None and seed is not None:
             raise TypeError("rng and seed are both given; they are two names of one argument")
         self.pattern = text("pattern", pattern)
-        self.scramble = {True: "default", False: None}[scramble] if isinstance(scramble, bool) else scramble
+        self.scramble = self._scramble_of(scramble)
         self.pad = integer("pad", pad, bits=32)
         self.total = None if total is None else integer("total", total)
-        self.seed = _seed_of(seed if rng is None else rng)
+        self.seed = seed_of("the seed", seed if rng is None else rng)
         self.optimization = optimization
         self._begin(d)
         # What scipy.integrate.qmc_quad makes its further, independent engines with.
-        fresh = "default" if self.scramble is None else self.scramble
+        fresh = self.scramble
+        if fresh is None or fresh.lower() in ("none", "default"):
+            fresh = _core.pattern_random_scramble(pattern)
         self._init_quad: dict[str, Any] = {
             "pattern": pattern,
             "d": d,
@@ -168,6 +150,17 @@ class Engine(_qmc.QMCEngine):  # type: ignore[misc]
         }
         self._needs_total = _core.pattern_needs_total(pattern)
         self._whole = self._make_whole()
+
+    def _scramble_of(self, scramble: str | bool | None) -> str | None:
+        """As `sunfleck.points` takes it."""
+        if scramble is None or scramble is False:
+            return None
+        if scramble is not True:
+            return text("scramble", scramble)
+        random = _core.pattern_random_scramble(self.pattern)
+        if random == "none" and not _core.pattern_is_random(self.pattern):
+            raise ValueError(f"scramble is True, but nothing randomizes {self.pattern}; give False or another pattern")
+        return random
 
     def _begin(self, d: int) -> None:
         """SciPy's part of the state, as new: its own generator is for `optimization`."""
@@ -210,6 +203,58 @@ class Engine(_qmc.QMCEngine):  # type: ignore[misc]
                 f"{n} points after {self.num_generated} are more than the total of {self.total}; "
                 "reset the engine, or give a larger total"
             )
+
+    def random(self, n: int = 1, *, workers: int = 1) -> NDArray[Any]:
+        """The next n points.
+
+        Parameters
+        ----------
+        n : int
+            How many.
+        workers : int
+            Threads, at least 1; -1: one for each processor. Changes no bit.
+
+        Returns
+        -------
+        ndarray of float64, shape (n, d), in [0, 1)
+
+        Raises
+        ------
+        ValueError
+            More than are left of ``total``, or a count that the pattern can't have.
+        TypeError
+            n is no integer; NumPy's are.
+        """
+        # SciPy counts with what it is given, and a NumPy integer would stay one from then on.
+        sample: NDArray[Any] = super().random(integer("n", n), workers=workers)
+        return sample
+
+    def random_base2(self, m: int) -> NDArray[Any]:
+        """The next 2^m points, as `scipy.stats.qmc.Sobol` has it.
+
+        Parameters
+        ----------
+        m : int
+            Logarithm of the number of points to base 2.
+
+        Returns
+        -------
+        ndarray of float64, shape (2**m, d), in [0, 1)
+
+        Raises
+        ------
+        ValueError
+            sobol, sz and lattice, where the points drawn so far and these are not a power of two
+            together: they would lose their balance.
+        """
+        n = 1 << integer("m", m, bits=6)
+        total = self.num_generated + n
+        if self.pattern.lower() in ("sobol", "sz", "lattice") and total & (total - 1):
+            raise ValueError(
+                f"{n} points after {self.num_generated} are {total}, no power of two: {self.pattern} would lose its "
+                "balance; reset the engine, or draw with random(n)"
+            )
+        return self.random(n)
 
     def _random(self, n: int = 1, *, workers: int = 1) -> NDArray[Any]:
         n = integer("n", n)
@@ -263,7 +308,8 @@ class Engine(_qmc.QMCEngine):  # type: ignore[misc]
         ValueError
             More than are left of ``total``.
         """
-        self._left(integer("n", n))
-        self.num_generated += n
+        skipped = integer("n", n)
+        self._left(skipped)
+        self.num_generated += skipped
         self._sets += 1
         return self

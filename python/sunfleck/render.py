@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sunfleck import _core
-from sunfleck._arguments import array_of, flag, integer, number, text
+from sunfleck._arguments import array_of, choice, flag, integer, number, text
 from sunfleck._core import Progress
 from sunfleck._files import FilePath, ending, given_path
 from sunfleck.error import CheckpointError
@@ -297,9 +297,7 @@ class Image:
             The file can't be written; with the reason.
         """
         named = dict(self.channels)
-        if channel not in named:
-            raise ValueError(f"channel is {channel!r}; the image has {', '.join(named)}")
-        write_false_color(path, named[channel])
+        write_false_color(path, named[choice("channel", channel, named, "the image has")])
 
     def heatmap(self, channel: str = "samples") -> Figure:
         """A channel in colours, with its scale and unit; it shows itself in a notebook.

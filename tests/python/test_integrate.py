@@ -189,7 +189,7 @@ def test_the_result_is_a_record() -> None:
         ({"f": lambda u: u[:, 0] * 1j}, TypeError, "complex"),
         ({"f": lambda u: None}, TypeError, "object"),
         ({"f": lambda u: 5 * u[:, 0], "value_range": (0, 1)}, ValueError, "outside the range of values"),
-        ({"d": 0}, ValueError, "dims is 0"),
+        ({"d": 0}, ValueError, "d is 0"),
         ({"pattern": "sobble"}, ValueError, "sobble"),
         ({"scramble": "permuted"}, ValueError, "scramble"),
         ({"tolerance": 0}, ValueError, "tolerance is 0"),

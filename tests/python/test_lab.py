@@ -66,7 +66,7 @@ def test_a_number_outside_its_interval_is_told() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "seed", "told"), [("randu", 1, "there is no experiment 'randu'"), ("float-one", 0, "seed is 0")]
+    ("name", "seed", "told"), [("randu", 1, "experiment is 'randu'"), ("float-one", 0, "seed is 0")]
 )
 def test_bad_input_is_refused(name: str, seed: int, told: str) -> None:
     with pytest.raises(ValueError, match=told):
@@ -103,7 +103,7 @@ def test_one_experiment_prints_its_report_and_writes_its_figure(
         ([], "give one of NAME, --list and --all"),
         (["randu-planes", "--list"], "give one of NAME, --list and --all"),
         (["--all"], "--all needs -o DIR"),
-        (["nothing"], "there is no experiment 'nothing'; give one of randu-planes,"),
+        (["nothing"], "experiment is 'nothing'; choose one of randu-planes,"),
         (["randu-planes", "--seed", "-1"], "seed is -1; it must be 1 to"),
         (["randu-planes", "-o", "planes.gif"], ".png"),
     ],

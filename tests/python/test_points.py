@@ -151,7 +151,7 @@ def test_out_is_filled_in_place() -> None:
 @pytest.mark.parametrize(
     ("out", "error"),
     [
-        (np.zeros((N, D)), TypeError),
+        (np.zeros((N, D), dtype=np.float16), TypeError),
         (np.zeros((D, N), dtype=np.float32), ValueError),
         (np.zeros((D, N), dtype=np.float32).T, ValueError),
         (np.zeros((N, 2 * D), dtype=np.float32)[:, ::2], ValueError),
@@ -239,3 +239,91 @@ def test_a_kept_set_refuses_as_a_new_one_does() -> None:
     with pytest.raises(ValueError, match="total of 16"):
         sf.points("sobol", 16, 2, start=16, total=16)
     assert len(sf.points("sobol", 16, 2, total=16)) == 16
+
+
+# ---- sources of randomness, names, dtypes ----
+
+
+def test_seeds_come_from_whatever_numpy_has() -> None:
+    for name in ("seed", "rng"):
+        for make in (np.random.default_rng, np.random.SeedSequence, lambda s: sf.Rng("pcg32", seed=s)):
+            source, twin = make(5), make(5)
+            a, b = (sf.points("sobol", 8, **{name: source}) for _ in range(2))  # type: ignore[arg-type]
+            assert not np.array_equal(a, b)  # advanced
+            assert np.array_equal(a, sf.points("sobol", 8, **{name: twin}))  # type: ignore[arg-type]
+        assert not np.array_equal(*(sf.points("sobol", 8, **{name: None}) for _ in range(2)))  # type: ignore[arg-type]
+        assert np.array_equal(sf.points("sobol", 8, **{name: np.uint64(3)}), sf.points("sobol", 8, seed=3))
+    values = [
+        sf.integrate(lambda u: u[:, 0] ** 2, 1, max_samples=2048, **{name: np.random.default_rng(5)}).value  # type: ignore[arg-type]
+        for name in ("seed", "rng")
+    ]
+    assert values[0] == values[1]
+    with pytest.raises(TypeError, match="rng and seed are both given"):
+        sf.points("sobol", 8, seed=1, rng=2)
+    with pytest.raises(TypeError, match="rng is 'x'; give None, an integer"):
+        sf.points("sobol", 8, rng="x")
+    with pytest.raises(TypeError, match=r"seed is 1\.5"):
+        sf.points("sobol", 8, seed=1.5)
+
+
+def test_names_are_the_same_in_upper_and_lower_case() -> None:
+    assert np.array_equal(sf.points("SOBOL", 8, scramble="Owen"), sf.points("sobol", 8, scramble="owen"))
+    assert sf.valid_counts("Jittered", 997) == (992, 999)
+    assert sf.Rng("PCG32", seed=1).bits() == sf.Rng("pcg32", seed=1).bits()
+    assert sf.Rng("MT19937", seed=1).name == "mt19937"
+    points = sf.points("sobol", 8)
+    assert sf.uniformity.discrepancy(points, kind="Centered") == sf.uniformity.discrepancy(points, kind="centered")
+    with pytest.warns(UserWarning, match="power of two"):
+        sf.points("Sobol", 7)
+    image = sf.render(sf.scenes.penumbra(), 8, 8, spp=1, pattern="Sobol", pixel_filter="Tent", seeds="PIXEL", threads=1)
+    assert image.color.shape == (8, 8, 3)
+
+
+@pytest.mark.parametrize("dtype", ["float32", "float64", "uint32"])
+def test_out_sets_the_dtype(dtype: str) -> None:
+    out = np.empty((8, 2), dtype)
+    assert sf.points("sobol", 8, out=out) is out
+    assert np.array_equal(out, sf.points("sobol", 8, dtype=dtype))
+    with pytest.raises(TypeError, match="out has dtype"):
+        sf.points("sobol", 8, out=out, dtype="float32" if dtype != "float32" else "float64")
+    with pytest.raises(TypeError, match="int16"):
+        sf.points("sobol", 8, out=np.empty((8, 2), "int16"))
+
+
+@pytest.mark.filterwarnings("ignore:.*aligned block")
+@pytest.mark.parametrize("pattern", sorted(sf.PATTERNS))
+@pytest.mark.parametrize("d", [1, 2, 3, 4])
+def test_the_counts_nearest_to_any_are_those_that_are_taken(pattern: str, d: int) -> None:
+    taken = []
+    for n in range(1, 41):
+        try:
+            sf.points(pattern, n, d)
+        except ValueError:
+            continue
+        taken.append(n)
+    least = 1 if pattern in ("uniform", "jittered", "latin", "multijittered", "orthogonal", "hammersley") else 0
+    taken = [0, *taken] if least == 0 else taken
+    for n in range(max(taken) + 1):
+        below = max((t for t in taken if t <= n), default=None)
+        above = min(t for t in taken if t >= n)
+        # 0 of a pattern whose sequence may have no points is "none" and 0 at once.
+        assert sf.valid_counts(pattern, n, d) == (below or None, above or None), n
+
+
+@pytest.mark.filterwarnings("ignore:.*aligned block")
+@pytest.mark.parametrize("pattern", sorted(sf.PATTERNS))
+def test_the_word_is_the_floats_and_but_for_halton_the_doubles(pattern: str) -> None:
+    [n] = {count for count in sf.valid_counts(pattern, 961, 3) if count and count <= 961}
+    for scramble in sf.SCRAMBLES:
+        try:
+            words = sf.points(pattern, n, 3, scramble=scramble, seed=7, dtype="uint32")
+        except ValueError:
+            continue
+        floats, doubles = (sf.points(pattern, n, 3, scramble=scramble, seed=7, dtype=t) for t in ("float32", "float64"))
+        assert np.array_equal(floats * np.float32(2**24), words >> 8)
+        above = words.astype(np.float64) - np.floor(doubles * 2.0**32)
+        if pattern in ("halton", "hammersley"):
+            assert above.min() >= 0
+            assert above.max() <= 256
+        else:
+            assert not above.any()

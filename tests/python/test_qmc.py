@@ -230,6 +230,57 @@ def test_sobol_warns_once() -> None:
         engine.random(5)
 
 
+@pytest.mark.parametrize("name", NAMES)
+def test_scramble_true_randomizes_or_is_refused(name: str) -> None:
+    n = count_near(name, 16, 2)
+    if name == "uniform":
+        with pytest.raises(ValueError, match="nothing randomizes uniform"):
+            Engine(name, 2, scramble=True, seed=1)
+        return
+    a, b = (Engine(name, 2, scramble=True, seed=seed).random(n) for seed in (1, 2))
+    assert not np.array_equal(a, b)
+    if name in SEQUENCES:  # point 0 is uniform over the seeds: six standard deviations of the mean of 200
+        first = np.array([Engine(name, 2, scramble=True, seed=seed).random()[0] for seed in range(200)])
+        assert np.abs(first.mean(axis=0) - 0.5).max() < 6 / np.sqrt(12 * 200)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_numpys_integers_leave_the_next_draw_as_it_was(name: str) -> None:
+    n = count_near(name, 16, 1)
+    plain, engine = Engine(name, 1, seed=1), Engine(name, 1, seed=1)
+    kinds: list[Any] = [np.int64, np.uint64, np.uint8, np.prod]
+    for kind in kinds:
+        assert np.array_equal(engine.random(kind(n)), plain.random(n))
+        assert type(engine.num_generated) is int
+    assert engine.fast_forward(np.int64(3)).num_generated == plain.fast_forward(3).num_generated
+    assert type(engine.num_generated) is int
+    assert np.array_equal(engine.random(n), plain.random(n))
+
+
+def test_qrvs_draws_twice() -> None:
+    normal = sampling.NumericalInversePolynomial(stats.norm())
+    engine = Engine("halton", 1, seed=1)
+    for _ in range(2):
+        assert normal.qrvs(size=(3, 2), qmc_engine=engine).shape == (3, 2)
+
+
+def test_a_seed_sequence_is_advanced() -> None:
+    sequence, again = np.random.SeedSequence(1), np.random.SeedSequence(1)
+    a, b = (Engine("sobol", 2, seed=sequence).seed for _ in range(2))
+    assert a != b
+    assert Engine("sobol", 2, rng=again).seed == a
+    assert np.random.SeedSequence(1).generate_state(1, np.uint64)[0] != a
+
+
+def test_random_base2() -> None:
+    engine, whole = Engine("sobol", 2, seed=1), Engine("sobol", 2, seed=1).random(8)
+    assert np.array_equal(engine.random_base2(2), whole[:4])
+    assert np.array_equal(engine.random_base2(np.int64(2)), whole[4:])
+    with pytest.raises(ValueError, match="4 points after 8 are 12, no power of two"):
+        engine.random_base2(2)
+    assert Engine("halton", 2, seed=1).random_base2(3).shape == (8, 2)
+
+
 # ---- SciPy's users of engines ----
 
 with_quad = pytest.mark.skipif(not hasattr(integrate, "qmc_quad"), reason="SciPy 1.11 has qmc_quad")
@@ -256,6 +307,16 @@ def test_qmc_quad_estimates_are_independent_though_the_first_is_plain() -> None:
     engine = Engine("sobol", 2, scramble=None, seed=1)
     result = integrate.qmc_quad(lambda x: x[0] * x[1], [0, 0], [1, 1], n_points=256, n_estimates=4, qrng=engine)
     assert result.standard_error > 0
+
+
+@with_quad
+@pytest.mark.parametrize("name", ["lattice", "r2", "hammersley"])
+@pytest.mark.parametrize("scramble", [True, "default", None])
+def test_qmc_quads_error_of_plain_patterns_is_not_nothing(name: str, scramble: Any) -> None:
+    engine = Engine(name, 2, scramble=scramble, seed=1)
+    result = integrate.qmc_quad(lambda x: np.exp(x[0] * x[1]), [0, 0], [1, 1], n_points=64, n_estimates=8, qrng=engine)
+    assert result.standard_error > 0
+    assert abs(result.integral - 1.3179021514544) < 8 * result.standard_error + (0.05 if scramble is not True else 0)
 
 
 @with_quad

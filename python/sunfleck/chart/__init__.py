@@ -27,7 +27,7 @@ import types
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from sunfleck._arguments import integer, text
+from sunfleck._arguments import choice, integer, text
 from sunfleck._files import FilePath
 from sunfleck.chart.cells import Store
 from sunfleck.chart.generator_chart import generator_cells, generator_panels
@@ -54,10 +54,8 @@ def _names(
     if given is None:
         return list(default)
     names = [text(name, one).strip() for one in (given.split(",") if isinstance(given, str) else given)]
-    names = list(dict.fromkeys(one for one in names if one))
-    for one in names:
-        if allowed and one not in allowed:
-            raise ValueError(f"{name}: there is no {one!r}; give some of {', '.join(allowed)}")
+    names = [choice(name, one, allowed) if allowed else one for one in names if one]
+    names = list(dict.fromkeys(names))
     if not names:
         raise ValueError(f"{name} is {given!r}; give at least one name")
     return names
@@ -338,9 +336,7 @@ class _CallableModule(types.ModuleType):
     """Lets ``sf.chart(kind, ...)`` be said for ``sf.chart.KINDS[kind](...)``."""
 
     def __call__(self, kind: str = "patterns", /, *arguments: Any, **options: Any) -> Chart:
-        if kind not in KINDS:
-            raise ValueError(f"there is no chart of {kind!r}; give one of {', '.join(KINDS)}")
-        return KINDS[kind](*arguments, **options)
+        return KINDS[choice("kind", kind, KINDS)](*arguments, **options)
 
 
 sys.modules[__name__].__class__ = _CallableModule

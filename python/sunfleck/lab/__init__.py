@@ -13,6 +13,7 @@ Examples
 
 from __future__ import annotations
 
+from sunfleck._arguments import choice
 from sunfleck.lab import estimates, generators, mappings, patterns, rays, renders, streams
 from sunfleck.lab.experiment import Experiment, Measured
 from sunfleck.lab.report import Result, table, write_all
@@ -53,8 +54,7 @@ def run(name: str, seed: int = 1) -> Result:
     >>> sf.lab.run("sphere-poles").before > 2 * sf.lab.run("sphere-poles").after
     True
     """
-    if name not in EXPERIMENTS:
-        raise ValueError(f"there is no experiment {name!r}; give one of {', '.join(EXPERIMENTS)}")
+    name = choice("experiment", name, EXPERIMENTS)
     if not 1 <= seed <= 2**30:
         raise ValueError(f"seed is {seed}; it must be 1 to {2**30}")
     experiment = EXPERIMENTS[name]
