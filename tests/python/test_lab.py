@@ -4,7 +4,7 @@
 """The laboratory: each failure fails and each remedy holds within their stated intervals, at several seeds.
 
 The intervals are derived where the experiments are defined. Wide ones are about six standard deviations, so
-that 44 experiments at 3 seeds have a chance in a million of a false alarm; the seeds are fixed all the same.
+that 45 experiments at 3 seeds have a chance in a million of a false alarm; the seeds are fixed all the same.
 """
 
 from __future__ import annotations
