@@ -75,7 +75,7 @@ def read_header(text: str) -> Iterator[Entry]:
                 yield entry
             comment, at = _comment(lines, at)
             entry = Entry(comment)
-        elif re.match(r"#(if|el|endif|include)|#define SUNFLECK_\w+_H$|//|extern \"C\"|\}$|$", line):
+        elif re.match(r"#(if|el|endif|include|error|pragma)|#define SUNFLECK_\w+_H$|//|extern \"C\"|\}$|$", line):
             if not line and (entry.comment or entry.declarations):
                 yield entry
                 entry = Entry([])
