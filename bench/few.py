@@ -5,7 +5,7 @@
 
     few.py [--rounds N]
 
-Two builds, in build/few/: one sorts in all scenes, one in none (FEW of csrc/scene.c). Each renders
+Two builds, in build/few/: one sorts in all scenes, one in none (FEW of csrc/scene/scene.c). Each renders
 the Cornell box with walls left out, boxes or balls added, or all walls and boxes split, and the
 keyhole; in turn, each time in a process of its own. A ratio is the time with sorting over that without.
 """
@@ -77,7 +77,7 @@ print(json.dumps(taken))
 
 def set_few(few: int) -> Callable[[Path], None]:
     def change(folder: Path) -> None:
-        path = folder / "csrc/scene.c"
+        path = folder / "csrc/scene/scene.c"
         before, line, after = path.read_text().partition("#define FEW ")
         assert line, path
         path.write_text(f"{before}{line}{few}\n{after.partition(chr(10))[2]}")

@@ -37,7 +37,7 @@ print(sorted(seconds)[4])
 
 def empty(folder: Path) -> None:
     for module in MODULES:
-        path = folder / f"csrc/{module}_kernels.c"
+        path = folder / f"csrc/trace/{module}_kernels.c"
         table = TABLE.search(path.read_text())
         assert table, path
         path.write_text(f'#include "{module}_kernels.h"\n\n{table[0]}{{0}};\n')

@@ -29,7 +29,7 @@ _LINES_AND_POINTS, _TRIANGLES, _STRIP, _FAN = (0, 1, 2, 3), 4, 5, 6
 _COPIED = 10_000
 
 # Transforms beyond these are flattened: the largest quotient of singular values, and the determinant's size.
-# Instances allow three times the quotient (csrc/instances.c: Frobenius's norms), and ten times the sizes.
+# Instances allow three times the quotient (csrc/scene/instances.c: Frobenius's norms), and ten times the sizes.
 _CONDITION_LIMIT = 5e4
 _DETERMINANTS = (1e-35, 1e35)
 

@@ -13,9 +13,9 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "container.h"
-#include "film.h"
-#include "platform.h"
+#include "base/container.h"
+#include "base/platform.h"
+#include "film/film.h"
 
 #define FILE_NAME "render.ckpt"
 #define Z 1.959963985

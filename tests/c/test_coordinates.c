@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "coordinates_kernels.h"
 #include "sunfleck/render.h"
+#include "trace/coordinates_kernels.h"
 
 enum { GROUPS = 5 * SF_MAX_BOUNCES };
 

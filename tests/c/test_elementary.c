@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "elementary_f64.h"
+#include "mapping/elementary_f64.h"
 
 #define ALL 16777216 /* the multiples of 2^-24 in [0,1) */
 

@@ -9,8 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "container.h"
-#include "film.h"
+#include "base/container.h"
+#include "film/film.h"
 
 #define FILE_NAME "forged.ckpt"
 #define WIDTH 13

@@ -4,7 +4,7 @@
 /* The tree of lights: its probabilities sum to 1 and are those that it draws by, no piece that sends
  * light is passed over, the same bits at every level; degenerate lights. */
 
-#include "light_tree_kernels.h"
+#include "trace/light_tree_kernels.h"
 
 #include <math.h>
 

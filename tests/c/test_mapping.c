@@ -16,8 +16,8 @@
 
 #include <cmocka.h>
 
+#include "mapping/mapping_kernels.h"
 #include "mapping_cases.h"
-#include "mapping_kernels.h"
 
 #define COUNT 1000 /* no multiple of a block */
 

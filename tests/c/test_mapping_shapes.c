@@ -18,8 +18,8 @@
 #include <cmocka.h>
 
 #undef NDEBUG /* the inline functions of this file assert */
+#include "mapping/mapping_f64.h"
 #include "mapping_cases.h"
-#include "mapping_f64.h"
 
 static float unit(uint64_t seed, uint64_t i) { return sf_float_from_bits((uint32_t)(sf_hash64(seed, i) >> 32)); }
 

@@ -5,9 +5,9 @@
  * errors that the film itself reports: 5 of them are exceeded once in 1.7 million. */
 #include "scenes.h"
 
-#include "batch.h"
-#include "gather_kernels.h"
-#include "pages.h"
+#include "base/pages.h"
+#include "trace/batch.h"
+#include "trace/gather_kernels.h"
 
 #define PI 3.14159265358979323846
 

@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
+#include "rng/rng_kernels.h"
 #include "rng_cases.h"
-#include "rng_kernels.h"
 
 /* ---- fills ---- */
 

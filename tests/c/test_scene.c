@@ -3,7 +3,7 @@
 
 #include "scenes.h"
 
-#include "scene_data.h"
+#include "scene/scene_data.h"
 
 static sf_scene *new_scene(void) {
     sf_scene *scene;

@@ -13,7 +13,7 @@ import pytest
 import sunfleck as sf
 from sunfleck.material import Material
 
-MANY = 100  # more than are few, by csrc/scene.c
+MANY = 100  # more than are few, by csrc/scene/scene.c
 
 
 def specks() -> sf.Mesh:

@@ -322,5 +322,5 @@ def test_nothing_is_written_when_a_point_is_refused() -> None:
 
 
 def test_the_double_formulas_are_made_from_the_headers() -> None:
-    script = Path(__file__).resolve().parents[2] / "csrc/make_mapping_f64.py"
+    script = Path(__file__).resolve().parents[2] / "csrc/mapping/make_mapping_f64.py"
     assert subprocess.run([sys.executable, str(script), "--check"]).returncode == 0

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "sunfleck/base.h"
+
+#if defined(__linux__)
+#include <sched.h>
+#endif
+#include <stdarg.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#include "base/error.h"
+#include "base/platform.h"
+
+#define SF_TEXT_(x) #x
+#define SF_TEXT(x) SF_TEXT_(x)
+
+const char *sf_version(void) {
+    return SF_TEXT(SF_VERSION_MAJOR) "." SF_TEXT(SF_VERSION_MINOR) "." SF_TEXT(SF_VERSION_PATCH);
+}
+
+const char *sf_status_name(sf_status status) {
+    switch (status) {
+        case SF_STATUS_OK: return "ok";
+        case SF_STATUS_INVALID_VALUE: return "invalid value";
+        case SF_STATUS_OUT_OF_MEMORY: return "out of memory";
+        case SF_STATUS_IO: return "input/output error";
+        case SF_STATUS_UNSUPPORTED: return "unsupported";
+        case SF_STATUS_BACKEND: return "backend error";
+    }
+    return "unknown status";
+}
+
+const char *sf_isa_name(sf_isa isa) {
+    return isa == SF_ISA_AVX512 ? "avx512" : isa == SF_ISA_AVX2 ? "avx2" : "baseline";
+}
+
+/* The features of the x86-64-v4 and -v3 levels (System V ABI), which the kernels are built for. */
+static sf_isa processor_isa(void) {
+#ifdef SF_HAVE_LEVELS
+    int v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
+             __builtin_cpu_supports("bmi2");
+    int v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+             __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+             __builtin_cpu_supports("avx512vl");
+    return v4 ? SF_ISA_AVX512 : v3 ? SF_ISA_AVX2 : SF_ISA_BASELINE;
+#else
+    return SF_ISA_BASELINE;
+#endif
+}
+
+sf_isa sf_isa_active(void) {
+    sf_isa best = processor_isa();
+    const char *asked = getenv("SUNFLECK_ISA");
+    if (!asked) return best;
+    for (int isa = SF_ISA_BASELINE; isa <= (int)best; ++isa)
+        if (sf_name_matches(asked, sf_isa_name((sf_isa)isa))) return (sf_isa)isa;
+    return best;
+}
+
+sf_status sf_fail(sf_error *error, sf_status status, const char *format, ...) {
+    if (!error) return status;
+    error->status = status;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(error->message, sizeof error->message, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+sf_status sf_fail_memory(sf_error *error, const char *what, size_t bytes) {
+    return sf_fail(error, SF_STATUS_OUT_OF_MEMORY, "out of memory: %zu bytes for %s", bytes, what);
+}
+
+unsigned sf_processor_count(void) {
+#if defined(__linux__)
+    cpu_set_t set;
+    if (sched_getaffinity(0, sizeof set, &set) == 0 && CPU_COUNT(&set) > 0) return (unsigned)CPU_COUNT(&set);
+#endif
+    long count = sysconf(_SC_NPROCESSORS_ONLN);
+    return count > 0 ? (unsigned)count : 1;
+}

@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "base/replacement.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <libgen.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/error.h"
+
+#define SUFFIX ".part"
+#define WRITE_LIMIT ((size_t)1 << 30) /* Linux writes at most 2^31 - 4096 bytes at a time */
+
+static sf_status fail_io(const char *what, const char *path, sf_error *error) {
+    return sf_fail(error, SF_STATUS_IO, "can't %s '%s': %s", what, path, sf_system_message(errno));
+}
+
+static void close_all(sf_replacement *r) {
+    if (r->file >= 0) close(r->file);
+    free(r->target);
+    free(r->beside);
+    *r = (sf_replacement){.file = -1};
+}
+
+/* 1: the file beside is open and ours. 0: somebody renamed it between open and lock; try again.
+ * -1: errno says why not. The lock ends with the process, however that ends. */
+static int open_and_lock(sf_replacement *r) {
+    struct stat opened, named;
+    r->file = open(r->beside, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+    if (r->file < 0) return -1;
+    if (flock(r->file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        errno = EBUSY; /* "device or resource busy": another process is writing it */
+        return -1;
+    } /* a file system without locks goes without */
+    if (fstat(r->file, &opened) != 0) return -1;
+    if (stat(r->beside, &named) == 0 && named.st_ino == opened.st_ino && named.st_dev == opened.st_dev)
+        return ftruncate(r->file, 0) == 0 ? 1 : -1;
+    close(r->file);
+    r->file = -1;
+    return 0;
+}
+
+sf_status sf_replacement_open(sf_replacement *r, const char *path, sf_error *error) {
+    *r = (sf_replacement){.file = -1};
+    r->target = realpath(path, NULL);
+    if (!r->target) r->target = strdup(path); /* there is none yet */
+    if (r->target) r->beside = malloc(strlen(r->target) + sizeof SUFFIX);
+    if (!r->beside) {
+        close_all(r);
+        return sf_fail_memory(error, "a path", strlen(path));
+    }
+    strcpy(r->beside, r->target);
+    strcat(r->beside, SUFFIX);
+    int opened = 0;
+    while (opened == 0) opened = open_and_lock(r);
+    if (opened > 0) return SF_STATUS_OK;
+    sf_status status = fail_io("write", r->beside, error);
+    close_all(r);
+    return status;
+}
+
+sf_status sf_replacement_write(sf_replacement *r, const void *bytes, size_t count, sf_error *error) {
+    const char *next = bytes;
+    while (count > 0) {
+        ssize_t written = write(r->file, next, count < WRITE_LIMIT ? count : WRITE_LIMIT);
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) return fail_io("write", r->beside, error);
+        next += written;
+        count -= (size_t)written;
+    }
+    return SF_STATUS_OK;
+}
+
+static int sync_file(int file) {
+    int result;
+    do result = fsync(file);
+    while (result != 0 && errno == EINTR);
+    return result;
+}
+
+/* Brings the folder's entry to the disk. The new file is in place by now, and some file systems
+ * know no such call, so that its failure is no failure. */
+static void sync_folder(char *path) {
+    int folder = open(dirname(path), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder < 0) return;
+    (void)sync_file(folder);
+    close(folder);
+}
+
+sf_status sf_replacement_commit(sf_replacement *r, sf_error *error) {
+    if (sync_file(r->file) != 0 || rename(r->beside, r->target) != 0) {
+        sf_status status = fail_io("write", r->target, error);
+        sf_replacement_abandon(r);
+        return status;
+    }
+    sync_folder(r->target);
+    close_all(r);
+    return SF_STATUS_OK;
+}
+
+void sf_replacement_abandon(sf_replacement *r) {
+    if (r->beside && r->file >= 0) unlink(r->beside);
+    close_all(r);
+}

@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+/* Moments of arrays: blocks of 256, merged pairwise in a fixed order. */
+
+#include "sunfleck/estimate.h"
+
+#include <float.h>
+
+#include "base/platform.h"
+
+#define BLOCK 256
+#define LANES 8
+#define MAX_LEVELS 64
+
+/* The finite rows of a block, column by column. */
+typedef struct block {
+    size_t count;
+    size_t nonfinite;
+    SF_ALIGNED(double) column[3][BLOCK];
+} block;
+
+static int is_finite_row(const double *row, size_t width) {
+    int finite = 1;
+    for (size_t k = 0; k < width; ++k) finite &= fabs(row[k]) <= DBL_MAX;
+    return finite;
+}
+
+/* Takes up to BLOCK rows of `width` values, float or double, from row `first` on. */
+static void take_block(block *b, size_t first, size_t rows, size_t width, const float *f32, const double *f64) {
+    b->count = b->nonfinite = 0;
+    for (size_t i = first; i < first + rows; ++i) {
+        double row[3] = {0.0, 0.0, 0.0};
+        for (size_t k = 0; k < width; ++k) row[k] = f32 ? (double)f32[i * width + k] : f64[i * width + k];
+        /* Write always, count only what is finite: no branch to mispredict. */
+        for (size_t k = 0; k < width; ++k) b->column[k][b->count] = row[k];
+        int finite = is_finite_row(row, width);
+        b->count += (size_t)finite;
+        b->nonfinite += (size_t)!finite;
+    }
+}
+
+/* sum of (x_i - shift)^power, power 1 or 2, in LANES interleaved sums added pairwise. */
+static double sum_shifted(const double *x, size_t n, double shift, int power) {
+    double lane[LANES] = {0.0};
+    size_t i = 0;
+    for (; i + LANES <= n; i += LANES)
+        for (int k = 0; k < LANES; ++k) {
+            double d = x[i + k] - shift;
+            lane[k] += power == 2 ? d * d : d;
+        }
+    for (int k = 0; i < n; ++i, ++k) {
+        double d = x[i] - shift;
+        lane[k] += power == 2 ? d * d : d;
+    }
+    return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
+}
+
+/* Mean and sum of squares of one column by two passes, corrected for the rounding of the mean
+ * (Chan, Golub & LeVeque 1983, eq. 1.7). */
+static void column_moments(const double *x, size_t n, double *mean, double *m2) {
+    if (n == 0) {
+        *mean = *m2 = 0.0;
+        return;
+    }
+    double centre = sum_shifted(x, n, 0.0, 1) / (double)n;
+    /* A sum beyond the largest double: halve by the first value instead. */
+    if (!(fabs(centre) <= DBL_MAX)) centre = x[0];
+    double rest = sum_shifted(x, n, centre, 1), square = sum_shifted(x, n, centre, 2) - rest * (rest / (double)n);
+    *mean = centre + rest / (double)n;
+    *m2 = square > 0.0 ? square : 0.0;
+}
+
+/* The moments of all rows: levels[k] holds 2^k blocks until its twin arrives. */
+static sf_channel_moments array_moments(size_t count, size_t width, const float *f32, const double *f64) {
+    sf_channel_moments levels[MAX_LEVELS], total = {0};
+    uint64_t blocks = 0;
+    block b;
+    for (size_t first = 0; first < count; first += BLOCK, ++blocks) {
+        sf_channel_moments m = {0};
+        take_block(&b, first, count - first < BLOCK ? count - first : BLOCK, width, f32, f64);
+        m.count = b.count;
+        m.nonfinite = b.nonfinite;
+        for (size_t k = 0; k < width; ++k) column_moments(b.column[k], b.count, &m.mean[k], &m.m2[k]);
+        int level = 0;
+        for (; blocks >> level & 1; ++level) {
+            sf_channel_moments_merge(&levels[level], &m);
+            m = levels[level];
+        }
+        levels[level] = m;
+    }
+    for (int level = 0; level < MAX_LEVELS && blocks >> level; ++level)
+        if (blocks >> level & 1) {
+            sf_channel_moments_merge(&levels[level], &total);
+            total = levels[level];
+        }
+    return total;
+}
+
+static void add_scalars(sf_moments *m, sf_channel_moments total) {
+    sf_moments other = sf_channel_moments_at(&total, 0);
+    sf_moments_merge(m, &other);
+}
+
+void sf_moments_add_f32(sf_moments *m, size_t count, const float *x) {
+    add_scalars(m, array_moments(count, 1, x, NULL));
+}
+void sf_moments_add_f64(sf_moments *m, size_t count, const double *x) {
+    add_scalars(m, array_moments(count, 1, NULL, x));
+}
+
+/* The scalar sum of squares is the sum of the channels'. */
+static void add_vectors(sf_vector_moments *m, sf_channel_moments total) {
+    sf_vector_moments other = {0};
+    other.count = total.count;
+    other.nonfinite = total.nonfinite;
+    for (int k = 0; k < 3; ++k) other.mean[k] = total.mean[k];
+    other.m2 = (total.m2[0] + total.m2[1]) + total.m2[2];
+    sf_vector_moments_merge(m, &other);
+}
+
+void sf_vector_moments_add_f32(sf_vector_moments *m, size_t count, const float *x) {
+    add_vectors(m, array_moments(count, 3, x, NULL));
+}
+void sf_vector_moments_add_f64(sf_vector_moments *m, size_t count, const double *x) {
+    add_vectors(m, array_moments(count, 3, NULL, x));
+}
+
+void sf_channel_moments_add_f32(sf_channel_moments *m, size_t count, const float *x) {
+    sf_channel_moments total = array_moments(count, 3, x, NULL);
+    sf_channel_moments_merge(m, &total);
+}
+void sf_channel_moments_add_f64(sf_channel_moments *m, size_t count, const double *x) {
+    sf_channel_moments total = array_moments(count, 3, NULL, x);
+    sf_channel_moments_merge(m, &total);
+}
+
+void sf_weighted_moments_add_f64(sf_weighted_moments *m, size_t count, const double *x, const double *weights) {
+    for (size_t i = 0; i < count; ++i) sf_weighted_moments_add(m, x[i], weights[i]);
+}
+
+void sf_running_sums_add_f64(sf_running_sums *r, size_t count, const double *f) {
+    for (size_t i = 0; i < count; ++i) sf_running_sums_add(r, f[i]);
+}
+void sf_running_sums_f32_add_f32(sf_running_sums_f32 *r, size_t count, const float *f) {
+    for (size_t i = 0; i < count; ++i) sf_running_sums_f32_add(r, f[i]);
+}
+
+void sf_batch_means_add_f64(sf_batch_means *b, size_t count, const double *x) {
+    for (size_t i = 0; i < count; ++i) sf_batch_means_add(b, x[i]);
+}
+
+double sf_moments_half_width(const sf_moments *m, double confidence) {
+    if (m->count < 2) return (double)INFINITY;
+    return sf_student_t_factor(confidence, (double)m->count - 1.0) * sf_moments_standard_error(m);
+}

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The Sunfleck developers
+// SPDX-License-Identifier: Apache-2.0
+
+#include "trace/round_kernels.h"
+
+#include <math.h>
+
+#include "trace/rays.h"
+
+static inline void face_sphere(sf_batch *b, const sf_round *round, uint32_t i) {
+    float q[3], square = 0;
+    for (int c = 0; c < 3; ++c) {
+        q[c] = (b->origin[c][i] - round->centre[c]) + b->distance[i] * b->direction[c][i];
+        square += q[c] * q[c];
+    }
+    float scale = square > 0 ? 1 / sqrtf(square) : 0.0f;
+    for (int c = 0; c < 3; ++c) b->hit_normal[c][i] = q[c] * scale;
+}
+
+static void face(sf_batch *b, const sf_scene *scene, uint32_t count) {
+    for (uint32_t i = 0; i < count; ++i) {
+        const sf_round *round = scene->rounds + b->mesh[i];
+        if (round->kind == SF_ROUND_SPHERE)
+            face_sphere(b, round, i);
+        else if (round->kind == SF_ROUND_DISK)
+            for (int c = 0; c < 3; ++c) b->hit_normal[c][i] = round->normal[c];
+    }
+}
+
+/* The lift is a share of what the point was computed from, as elsewhere: here also the sphere's
+ * middle and radius. */
+static void settle(sf_batch *b, const sf_scene *scene, uint32_t count) {
+    for (uint32_t i = 0; i < count; ++i) {
+        const sf_round *round = scene->rounds + b->mesh[i];
+        if (round->kind != SF_ROUND_SPHERE) continue;
+        const float *centre = round->centre;
+        float lift =
+            sf_lift_on_sphere(round, sf_lift(b->origin[0][i], b->origin[1][i], b->origin[2][i], b->distance[i]));
+        for (int c = 0; c < 3; ++c)
+            b->point[c][i] = (centre[c] + round->radius * b->hit_normal[c][i]) +
+                             lift * (b->normal[c][i] - scene->back * b->direction[c][i]);
+    }
+}
+
+const sf_round_kernels SF_AT_LEVEL(sf_round_kernels) = {face, settle};
