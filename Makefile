@@ -72,6 +72,7 @@ lint: packages-test .venv/.lint
 	CMAKE_GENERATOR=Ninja cmake -S . -B build/lint -D CMAKE_BUILD_TYPE=Release -D CMAKE_COMPILE_WARNING_AS_ERROR=ON
 	cmake --build build/lint
 	scripts/check-format.sh
+	scripts/check-layers.py build/lint
 
 docs: packages-demo .venv/.docs
 	rm -rf build/site build/site-read docs/reference

@@ -10,7 +10,6 @@
 #include "base/error.h"
 #include "base/platform.h"
 #include "film/stopping.h"
-#include "trace/aov_kernels.h"
 
 /* An AOV's components; those without sums of their own are told from the film's statistics. */
 static const struct {
@@ -90,14 +89,6 @@ void sf_aov_reset(sf_film *film) {
     memset(aovs->sums, 0, film->stored * aovs->sums_per_pixel * sizeof *aovs->sums);
 }
 
-void sf_aov_gather(sf_batch *batch, const sf_render_context *context) {
-    const sf_aov_kernels *kernels = sf_aov_kernels_at(context->isa);
-    const sf_mesh_table *meshes = &context->scene->mesh_table;
-    if (context->aovs >> SF_AOV_ALBEDO & 1u) kernels->albedo(batch, meshes, batch->hit_sums);
-    if (context->aovs >> SF_AOV_NORMAL & 1u) kernels->normal(batch, meshes, batch->hit_sums);
-    if (context->aovs >> SF_AOV_DEPTH & 1u) kernels->depth(batch, meshes, context->camera.forward, batch->hit_sums);
-}
-
 static void add_vector(double *sums, const double value[3], double factor, double count) {
     for (int c = 0; c < 3; ++c) sums[c] += value[c] * factor;
     sums[3] += count;
@@ -111,14 +102,14 @@ static void add_hits(const sf_aov_film *aovs, double *sums, const sf_hit_sums *h
     sums[aovs->first_sum[SF_AOV_DEPTH] + 1] += hits->hits;
 }
 
-void sf_aov_add(sf_aov_film *aovs, const sf_batch *batch) {
-    for (uint32_t i = 0; i < batch->block_count; ++i) {
-        const sf_block *block = batch->blocks + i;
-        const sf_vector_moments *moments = &batch->statistics[i].moments;
-        double *sums = aovs->sums + (size_t)block->pixel * aovs->sums_per_pixel, count = (double)moments->count;
-        int half = block->number % 2 ? SF_AOV_HALF_B : SF_AOV_HALF_A;
-        if (wants(aovs, half)) add_vector(sums + aovs->first_sum[half], moments->mean, count, count);
-        if (batch->hit_sums) add_hits(aovs, sums, batch->hit_sums + i, sf_count_bits(block->active));
+void sf_aov_add(sf_aov_film *aovs, uint32_t count, const sf_block *blocks, const sf_block_statistics *statistics,
+                const sf_hit_sums *hits) {
+    for (uint32_t i = 0; i < count; ++i) {
+        const sf_vector_moments *moments = &statistics[i].moments;
+        double *sums = aovs->sums + (size_t)blocks[i].pixel * aovs->sums_per_pixel, samples = (double)moments->count;
+        int half = blocks[i].number % 2 ? SF_AOV_HALF_B : SF_AOV_HALF_A;
+        if (wants(aovs, half)) add_vector(sums + aovs->first_sum[half], moments->mean, samples, samples);
+        if (hits) add_hits(aovs, sums, hits + i, sf_count_bits(blocks[i].active));
     }
 }
 

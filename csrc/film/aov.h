@@ -9,8 +9,8 @@
 #ifndef SUNFLECK_AOV_H
 #define SUNFLECK_AOV_H
 
-#include "film/film.h"
-#include "trace/batch.h"
+#include "film/block.h"
+#include "film/film_internal.h"
 
 /* Those that the first hit tells. */
 #define SF_AOVS_OF_HITS (1u << SF_AOV_ALBEDO | 1u << SF_AOV_NORMAL | 1u << SF_AOV_DEPTH)
@@ -38,11 +38,9 @@ void sf_aov_destroy(sf_aov_film *aovs);
 /* Sets all sums back to 0. */
 void sf_aov_reset(sf_film *film);
 
-/* The batch's sums over first hits, after its camera rays were traced and before others are. */
-void sf_aov_gather(sf_batch *batch, const sf_render_context *context);
-
-/* Adds the blocks of a batch that was run to their pixels. */
-void sf_aov_add(sf_aov_film *aovs, const sf_batch *batch);
+/* Adds what `count` blocks have come to, to their pixels; `hits` is NULL where no AOV tells of first hits. */
+void sf_aov_add(sf_aov_film *aovs, uint32_t count, const sf_block *blocks, const sf_block_statistics *statistics,
+                const sf_hit_sums *hits);
 
 /* Fills row y of the crop's values. */
 void sf_aov_resolve_row(sf_film *film, uint32_t y);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "film/film.h"
+#include "film/film_internal.h"
 
 #include <inttypes.h>
 #include <math.h>

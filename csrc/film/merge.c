@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "base/error.h"
-#include "film/film.h"
+#include "film/film_internal.h"
 #include "film/signed_filter.h"
 
 static uint32_t smaller(uint32_t a, uint32_t b) { return a < b ? a : b; }

@@ -6,10 +6,15 @@
 
 #include "base/error.h"
 #include "base/platform.h"
+#include "film/block.h"
 #include "film/mask.h"
 #include "film/render_options.h"
 #include "film/stopping.h"
-#include "trace/coordinates.h"
+
+int sf_render_takes_pattern(sf_pattern pattern) {
+    return pattern == SF_PATTERN_UNIFORM || pattern == SF_PATTERN_RANDOM || pattern == SF_PATTERN_JITTERED ||
+           pattern == SF_PATTERN_HALTON || pattern == SF_PATTERN_SOBOL;
+}
 
 sf_render_options sf_render_options_default(void) {
     return (sf_render_options){.width = 512,

@@ -6,7 +6,7 @@
 
 #include <stdbool.h>
 
-#include "sunfleck/render.h"
+#include "sunfleck/film.h"
 
 /* Checks every option, and fills in those left open: crop, threads, the tolerance of 0.01. */
 sf_status sf_render_options_complete(sf_render_options *options, sf_error *error);

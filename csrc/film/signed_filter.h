@@ -20,7 +20,7 @@
 #ifndef SUNFLECK_SIGNED_FILTER_H
 #define SUNFLECK_SIGNED_FILTER_H
 
-#include "film/film.h"
+#include "film/film_internal.h"
 
 typedef struct sf_signed_pixel {
     sf_vector_moments positive, negative;

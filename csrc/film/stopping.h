@@ -25,8 +25,8 @@
 
 #include <stdbool.h>
 
-#include "film/film.h"
-#include "trace/coordinates.h"
+#include "film/block.h"
+#include "film/film_internal.h"
 
 #define SF_POOL_SIZE 16u /* pixels a side of the cells that decay is pooled over */
 

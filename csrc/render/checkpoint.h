@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-#include "film/film.h"
+#include "film/film_internal.h"
 #include "render/goal.h"
 
 /* Where the rounds are. */

@@ -15,7 +15,7 @@
 #ifndef SUNFLECK_GOAL_H
 #define SUNFLECK_GOAL_H
 
-#include "film/film.h"
+#include "film/film_internal.h"
 
 struct sf_rounds;
 typedef struct sf_goal sf_goal;

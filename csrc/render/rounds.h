@@ -16,7 +16,7 @@
 #define SUNFLECK_ROUNDS_H
 
 #include "base/pool.h"
-#include "film/film.h"
+#include "film/film_internal.h"
 #include "film/stopping.h"
 #include "render/checkpoint.h"
 #include "render/goal.h"

@@ -39,7 +39,7 @@ static void flush_batch(sf_rounds *r, sf_rounds_worker *worker) {
         add_block(r, i, batch);
         samples += sf_count_bits(batch->blocks[i].active);
     }
-    if (r->film->aovs) sf_aov_add(r->film->aovs, batch);
+    if (r->film->aovs) sf_aov_add(r->film->aovs, batch->block_count, batch->blocks, batch->statistics, batch->hit_sums);
     batch->block_count = 0;
     sf_atomic_fetch_add(&worker->samples, samples);
     if (r->deadline > 0 && sf_seconds_now() >= r->deadline)

@@ -8,6 +8,7 @@
 
 #include "base/level.h"
 #include "film/aov.h"
+#include "trace/batch.h"
 
 typedef struct sf_aov_kernels {
     void (*albedo)(const sf_batch *batch, const sf_mesh_table *meshes, sf_hit_sums *out);

@@ -6,6 +6,7 @@
 #include "trace/batch.h"
 
 #include "film/aov.h"
+#include "trace/aov_kernels.h"
 #include "trace/camera_kernels.h"
 #include "trace/coordinates_kernels.h"
 #include "trace/fog_kernels.h"
@@ -76,6 +77,15 @@ static void trace_nearest(run *r, uint32_t packets, const uint32_t *active, sf_c
     if (has(r, SF_STAGE_ROUND)) sf_round_kernels_at(r->context->isa)->face(r->batch, scene, packets * SF_LANES);
 }
 
+/* The sums over first hits, after the camera's rays were traced and before others are. */
+static void gather_hits(sf_batch *batch, const sf_render_context *context) {
+    const sf_aov_kernels *kernels = sf_aov_kernels_at(context->isa);
+    const sf_mesh_table *meshes = &context->scene->mesh_table;
+    if (context->aovs >> SF_AOV_ALBEDO & 1u) kernels->albedo(batch, meshes, batch->hit_sums);
+    if (context->aovs >> SF_AOV_NORMAL & 1u) kernels->normal(batch, meshes, batch->hit_sums);
+    if (context->aovs >> SF_AOV_DEPTH & 1u) kernels->depth(batch, meshes, context->camera.forward, batch->hit_sums);
+}
+
 /* Ends rays in the fog. */
 static void drift(run *r, uint32_t count) {
     next_coordinates(r, SF_DIMENSION_FOG, r->batch->coordinate);
@@ -97,7 +107,7 @@ static void trace_camera(run *r) {
     begin(r, SF_WORK_CAMERA_RAYS);
     trace_nearest(r, paths / SF_LANES, active, SF_STREAM);
     begin(r, SF_WORK_VERTICES);
-    if (b->hit_sums) sf_aov_gather(b, r->context);
+    if (b->hit_sums) gather_hits(b, r->context);
     if (has(r, SF_STAGE_FOG)) drift(r, paths);
     r->shade->first_radiance(b, scene);
     if (has(r, SF_STAGE_SKY)) sf_sky_kernels_at(r->context->isa)->first(b, scene);

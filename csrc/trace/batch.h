@@ -14,9 +14,9 @@
 #include <stdbool.h>
 
 #include "base/platform.h"
-#include "film/film.h"
+#include "film/film_internal.h"
 #include "scene/scene_data.h"
-#include "sunfleck/render.h"
+#include "sunfleck/film.h"
 #include "trace/coordinates.h"
 #include "trace/work_clock.h"
 
@@ -45,7 +45,7 @@ typedef struct sf_render_context {
 
 typedef struct sf_batch {
     SF_ALIGNED(float) origin[3][SF_PATHS]; /* of the rays */
-    float direction[3][SF_PATHS];          /* unit length */
+    float direction[3][SF_PATHS];          /* unit length; while materials respond to light, towards it */
     float distance[SF_PATHS];              /* to the hit */
     float hit_normal[3][SF_PATHS];         /* Embree's, of any length */
     uint32_t mesh[SF_PATHS];               /* that was hit; the table's `miss` row for none */

@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "points/halton.h"
-#include "sunfleck/render.h"
+#include "sunfleck/film.h"
 
 /* Sums a matrix over the bytes of the index, in reversed bits. */
 static void tabulate_sobol(uint32_t dimension, uint32_t table[4][256]) {
@@ -82,11 +82,6 @@ static sf_status choose_cells(sf_coordinates *coordinates, uint32_t spp, sf_erro
                        "pattern uniform needs to know its total ahead: give spp, or choose another pattern");
     coordinates->cells = spp ? spp : SF_LANES;
     return sf_grid_sides(coordinates->cells, 2, coordinates->sides, error);
-}
-
-int sf_render_takes_pattern(sf_pattern pattern) {
-    return pattern == SF_PATTERN_UNIFORM || pattern == SF_PATTERN_RANDOM || pattern == SF_PATTERN_JITTERED ||
-           pattern == SF_PATTERN_HALTON || pattern == SF_PATTERN_SOBOL;
 }
 
 static sf_status refuse_pattern(sf_pattern pattern, sf_error *error) {

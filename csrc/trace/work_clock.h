@@ -9,7 +9,7 @@
 #include <stdbool.h>
 
 #include "base/platform.h"
-#include "sunfleck/render.h"
+#include "sunfleck/film.h"
 
 typedef struct sf_work_clock {
     bool runs;

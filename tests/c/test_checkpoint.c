@@ -15,7 +15,7 @@
 
 #include "base/container.h"
 #include "base/platform.h"
-#include "film/film.h"
+#include "film/film_internal.h"
 
 #define FILE_NAME "render.ckpt"
 #define Z 1.959963985

@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "base/container.h"
-#include "film/film.h"
+#include "film/film_internal.h"
 
 #define FILE_NAME "forged.ckpt"
 #define WIDTH 13

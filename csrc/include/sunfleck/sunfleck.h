@@ -8,6 +8,7 @@
 #include "sunfleck/base.h"
 #include "sunfleck/discrete.h"
 #include "sunfleck/estimate.h"
+#include "sunfleck/film.h"
 #include "sunfleck/image.h"
 #include "sunfleck/integrate.h"
 #include "sunfleck/mapping.h"

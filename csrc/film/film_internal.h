@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /* The film's accumulators, and what it becomes when the render ends. */
-#ifndef SUNFLECK_FILM_H
-#define SUNFLECK_FILM_H
+#ifndef SUNFLECK_FILM_INTERNAL_H
+#define SUNFLECK_FILM_INTERNAL_H
 
 #include <stdbool.h>
 
 #include "sunfleck/estimate.h"
-#include "sunfleck/render.h"
+#include "sunfleck/film.h"
 
 /* What the 16 samples of a block come to: the lecture's vector mean and scalar sum of squares. */
 typedef struct sf_block_statistics {
