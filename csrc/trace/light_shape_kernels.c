@@ -351,7 +351,8 @@ static inline void connect(sf_batch *SF_RESTRICT b, const shape_lanes *SF_RESTRI
     b->alive[i] = sum > 0;
 }
 
-/* The same, whatever the surface makes of it. */
+/* The same, whatever the surface makes of it; with the direction, which the way to the shadow ray's end is
+ * not: that end is lifted off the light, by more than it is away where a lamp is lit by itself. */
 static inline void connect_bare(sf_batch *SF_RESTRICT b, const shape_lanes *SF_RESTRICT lanes,
                                 const drawn_lanes *SF_RESTRICT d, size_t first, size_t l) {
     size_t i = first + l;
@@ -360,6 +361,7 @@ static inline void connect_bare(sf_batch *SF_RESTRICT b, const shape_lanes *SF_R
     for (int c = 0; c < 3; ++c) {
         float value = b->throughput[c][i] * lanes->field[SF_LIGHT_WEIGHT_R + c][l] * d->radiance[c][l] * scale;
         b->to_light[c][i] = d->to[c][l];
+        b->direction[c][i] = d->direction[c][l];
         b->contribution[c][i] = value;
         sum += value;
     }

@@ -136,20 +136,14 @@ static inline void take_light(sf_batch *b, uint32_t i, const float value[3], flo
 
 /* The direction to the light of vertex i. */
 static inline void look_at_light(const sf_batch *b, uint32_t i, const vertex *v, float local[3]) {
-    float to[3];
-    for (int c = 0; c < 3; ++c) to[c] = b->to_light[c][i];
-    float scale = 1 / sqrtf(sf_dot3(to, to));
-    for (int c = 0; c < 3; ++c) to[c] *= scale;
+    const float to[3] = {b->direction[0][i], b->direction[1][i], b->direction[2][i]};
     to_local(v, to, local);
 }
 
 static inline void respond_diffuse(sf_batch *b, uint32_t i, bool weigh) {
-    float along = 0, square = 0;
-    for (int c = 0; c < 3; ++c) {
-        along += b->to_light[c][i] * b->normal[c][i];
-        square += b->to_light[c][i] * b->to_light[c][i];
-    }
-    float value = along > 0 ? along / sqrtf(square) * (1.0f / SF_PI_F) : 0.0f;
+    float cosine = 0;
+    for (int c = 0; c < 3; ++c) cosine += b->direction[c][i] * b->normal[c][i];
+    float value = cosine > 0 ? cosine * (1.0f / SF_PI_F) : 0.0f;
     const float values[3] = {value, value, value};
     take_light(b, i, values, weigh ? value : 0.0f, 1);
 }

@@ -148,3 +148,21 @@ def test_threads_change_no_bit() -> None:
     films = [sf.render(scene, 40, 30, spp=32, threads=threads).color for threads in (1, 2, 3)]
     assert np.array_equal(films[0], films[1])
     assert np.array_equal(films[0], films[2])
+
+
+@pytest.mark.parametrize("beside", [None, sf.Conductor(roughness=0.5), sf.Dielectric(1.5, roughness=0.3)])
+@pytest.mark.parametrize("lamp", ["sphere", "disk", "rectangle", "triangle"])
+def test_a_lamp_is_not_lit_by_itself(lamp: str, beside: sf.Conductor | sf.Dielectric | None) -> None:
+    more: dict[str, Any] = {"albedo": (0.7, 0.7, 0.7), "emission": (1, 1, 1)}
+    corners = [[-73, -100, 41], [-33, -100, 41], [-33, -60, 41], [-73, -60, 41]]
+    shapes: dict[str, Any] = {
+        "sphere": sf.Sphere((-53, -80, 41), 16, **more),
+        "disk": sf.Disk((-53, -80, 41), (0, 0, 1), 16, **more),
+        "rectangle": sf.Mesh(corners, [[0, 1, 2], [0, 2, 3]], **more),
+        "triangle": sf.Mesh([*corners[:2], [-53, -40, 41]], [[0, 1, 2]], **more),
+    }
+    far = sf.Mesh([[80, 20, -110], [90, -30, -80], [110, 30, -60]], [[0, 1, 2]], albedo=(0, 0, 0), material=beside)
+    camera = sf.Camera((-51, -78, 60), (-53, -80, 41), up=(0, 1, 0), vertical_fov=4)
+    for sampling in ("both", "light"):
+        scene = sf.Scene([shapes[lamp], far], camera, max_bounces=1, light_sampling=sampling)
+        assert np.array_equal(sf.render(scene, 8, 8, spp=64).color, np.ones((8, 8, 3)))
