@@ -8,9 +8,12 @@ Run as a program it reads seeds, a line each, and writes a pickled verdict for e
 
 from __future__ import annotations
 
+import logging
 import pickle
 import subprocess
 import sys
+import tempfile
+from typing import IO
 
 from compare import Verdict, judge
 from reference import load
@@ -22,6 +25,7 @@ class Worker:
     def __init__(self, effort: float) -> None:
         self._command = [sys.executable, __file__, str(effort)]
         self._process: subprocess.Popen[bytes] | None = None
+        self._said: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 -- a pipe that nobody reads would fill up
 
     def judge(self, seed: int) -> Verdict:
         """The verdict; one that says "crashed" where the process died."""
@@ -30,7 +34,7 @@ class Worker:
                 self._command,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
+                stderr=self._said,
                 start_new_session=True,  # Ctrl-C is for the one that reports
             )
         process = self._process
@@ -41,7 +45,9 @@ class Worker:
             process.stdin.flush()
             verdict = pickle.load(process.stdout)
         except (EOFError, BrokenPipeError, pickle.UnpicklingError):
-            words = process.communicate()[1].decode(errors="replace").strip().splitlines()
+            process.wait()
+            self._said.seek(0)
+            words = self._said.read().decode(errors="replace").strip().splitlines()
             self._process = None
             return Verdict(seed, crash=f"exit {process.returncode}: {words[-1] if words else 'without a word'}")
         assert isinstance(verdict, Verdict)
@@ -60,6 +66,7 @@ class Worker:
 
 
 def _serve(effort: float) -> None:
+    logging.getLogger("sunfleck").setLevel(logging.ERROR)  # black pictures are none of its business
     library = load()
     for line in sys.stdin:
         pickle.dump(judge(int(line), library, effort), sys.stdout.buffer)
