@@ -84,31 +84,11 @@ float sf_sz_sample_with(uint32_t index, uint32_t dimension, uint64_t seed, sf_sc
 
 enum { BLOCK_WORDS = 2048, PERIOD_WORDS = 512, COLUMN_GROUP = 16 };
 
-/* What 256 dimensions of sz have in common, the greater factors of their matrices, and what 16. */
-typedef struct sz_factors {
-    uint32_t of_256[32], of_16[32];
-} sz_factors;
-
-/* Dimensions are asked for in their order. */
-static void make_sz_matrix(sz_factors *common, uint32_t dimension, uint32_t columns[32]) {
-    if (dimension % 256 == 0) {
-        for (unsigned k = 0; k < 32; ++k) common->of_256[k] = UINT32_C(1) << k;
-        sf_sz_transform(dimension, common->of_256, 32);
-    }
-    if (dimension % 16 == 0) {
-        memcpy(common->of_16, common->of_256, sizeof common->of_16);
-        sf_sz_transform(dimension & 0xf0, common->of_16, 32);
-    }
-    memcpy(columns, common->of_16, sizeof common->of_16);
-    sf_sz_transform(dimension & 15, columns, 32);
-    for (unsigned k = 0; k < 32; ++k) columns[k] = sf_reverse_bits32(columns[k]);
-}
-
 /* The columns of a dimension as 64-bit words, scrambled where a matrix scramble is asked for. */
-static void make_columns(const sf_points_options *o, uint32_t dimension, sz_factors *common, uint64_t columns[32]) {
+static void make_columns(const sf_points_options *o, uint32_t dimension, uint64_t columns[32]) {
     uint32_t plain[32];
     if (o->pattern == SF_PATTERN_SZ)
-        make_sz_matrix(common, dimension, plain);
+        sf_sz_matrix(dimension, plain);
     else
         sf_sobol_matrix(dimension, plain);
     if (o->scramble != SF_SCRAMBLE_LMS) {
@@ -127,11 +107,10 @@ static void make_columns(const sf_points_options *o, uint32_t dimension, sz_fact
 
 /* Sums of the columns, a group of dimensions at a time, so that each row gets a whole line. */
 static void fill_columns(sf_net_tables *t, const sf_points_options *o) {
-    sz_factors common;
     for (uint32_t begin = 0; begin < t->dims; begin += COLUMN_GROUP) {
         uint64_t group[COLUMN_GROUP][32], sums[COLUMN_GROUP] = {0};
         uint32_t count = t->dims - begin < COLUMN_GROUP ? t->dims - begin : COLUMN_GROUP;
-        for (uint32_t i = 0; i < count; ++i) make_columns(o, begin + i, &common, group[i]);
+        for (uint32_t i = 0; i < count; ++i) make_columns(o, begin + i, group[i]);
         for (unsigned k = 0; k < t->index_bits; ++k)
             for (uint32_t i = 0; i < count; ++i) {
                 size_t at = (size_t)k * t->dims + begin + i;

@@ -68,10 +68,6 @@ void sf_net_release(sf_net_tables *tables);
 void sf_net_rows(sf_points_cursor *cursor, uint64_t first, size_t rows, sf_number_type type, int streams, void *out);
 void sf_net_make(sf_points_cursor *cursor, uint64_t first, size_t rows, uint32_t *high, uint32_t *low);
 
-/* sz.c: applies the matrix of a dimension to words whose bit k is digit k. The matrix of d is that
- * of d % 2^(2^r) after that of the rest. */
-void sf_sz_transform(uint32_t dimension, uint32_t *digits, unsigned count);
-
 /* points_pad.c: sobol and sz with `pad`. */
 sf_status sf_pad_prepare(sf_point_set *set, sf_error *error);
 void sf_pad_release(sf_pad_tables *tables);

@@ -68,8 +68,9 @@ static void shift_polynomials(uint32_t *digits, unsigned count, uint32_t a, unsi
     }
 }
 
-void sf_sz_transform(uint32_t dimension, uint32_t *digits, unsigned count) {
-    for (unsigned r = 5; r-- > 0;) {
+/* From the digits of an index to those of the dimension's point, mirrored, for `count` words. */
+static void transform(uint32_t dimension, uint32_t *digits, unsigned count) {
+    for (unsigned r = 3; r-- > 0;) { /* c_3 and c_4 are 0 in the first sixteen dimensions */
         unsigned bits = 1u << r;
         uint32_t part = r ? dimension & ((1u << bits) - (1u << bits / 2)) : dimension & 1;
         if (!part) continue;
@@ -81,12 +82,12 @@ void sf_sz_transform(uint32_t dimension, uint32_t *digits, unsigned count) {
 void sf_sz_matrix(uint32_t dimension, uint32_t columns[32]) {
     assert(dimension < SF_SZ_MAX_DIMS);
     for (unsigned k = 0; k < 32; ++k) columns[k] = UINT32_C(1) << k;
-    sf_sz_transform(dimension, columns, 32);
+    transform(dimension, columns, 32);
     for (unsigned k = 0; k < 32; ++k) columns[k] = sf_reverse_bits32(columns[k]);
 }
 
 uint32_t sf_sz_bits(uint32_t index, uint32_t dimension) {
     assert(dimension < SF_SZ_MAX_DIMS);
-    sf_sz_transform(dimension, &index, 1);
+    transform(dimension, &index, 1);
     return sf_reverse_bits32(index);
 }

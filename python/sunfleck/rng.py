@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from sunfleck import _core
-from sunfleck._arguments import integer, one_of, output_array, shape_of, text
+from sunfleck._arguments import integer, output_array, output_dtype, shape_of, text
 
 if TYPE_CHECKING:
     from sunfleck.bit_generator import BitGenerator
@@ -129,13 +129,13 @@ class Rng:
         return self._generator.stream
 
     @overload
-    def random(self, shape: None = None, dtype: DTypeLike = "float64", out: None = None) -> float: ...
+    def random(self, shape: None = None, dtype: DTypeLike | None = None, out: None = None) -> float: ...
     @overload
     def random(
-        self, shape: Shape | None = None, dtype: DTypeLike = "float64", out: NDArray[Any] | None = None
+        self, shape: Shape | None = None, dtype: DTypeLike | None = None, out: NDArray[Any] | None = None
     ) -> NDArray[Any]: ...
     def random(
-        self, shape: Shape | None = None, dtype: DTypeLike = "float64", out: NDArray[Any] | None = None
+        self, shape: Shape | None = None, dtype: DTypeLike | None = None, out: NDArray[Any] | None = None
     ) -> float | NDArray[Any]:
         """Uniform values in [0, 1), never 1.
 
@@ -143,8 +143,8 @@ class Rng:
         ----------
         shape : int or tuple of ints, optional
             None: one float, or the shape of ``out``.
-        dtype : "float64" or "float32"
-            53 or 24 random bits a value.
+        dtype : "float64" or "float32", optional
+            53 or 24 random bits a value. None: that of ``out``, or float64.
         out : ndarray, optional
             Filled in place: of this shape and dtype, C-contiguous.
 
@@ -162,18 +162,18 @@ class Rng:
         Releases the GIL while it fills. Ctrl-C ends a long fill within 0.2 s: the generator is then as it was,
         and ``out`` is filled in part.
         """
-        kind = one_of("dtype", dtype, ("float64", "float32"))
+        kind = output_dtype(dtype, out, ("float64", "float32"))
         values = self._filled(shape, kind, out)
         return float(values[()]) if shape is None and out is None else values
 
     @overload
-    def bits(self, shape: None = None, dtype: DTypeLike = "uint32", out: None = None) -> int: ...
+    def bits(self, shape: None = None, dtype: DTypeLike | None = None, out: None = None) -> int: ...
     @overload
     def bits(
-        self, shape: Shape | None = None, dtype: DTypeLike = "uint32", out: NDArray[Any] | None = None
+        self, shape: Shape | None = None, dtype: DTypeLike | None = None, out: NDArray[Any] | None = None
     ) -> NDArray[Any]: ...
     def bits(
-        self, shape: Shape | None = None, dtype: DTypeLike = "uint32", out: NDArray[Any] | None = None
+        self, shape: Shape | None = None, dtype: DTypeLike | None = None, out: NDArray[Any] | None = None
     ) -> int | NDArray[Any]:
         """Raw outputs, in order.
 
@@ -181,9 +181,10 @@ class Rng:
         ----------
         shape : int or tuple of ints, optional
             None: one integer, or the shape of ``out``.
-        dtype : "uint32" or "uint64"
+        dtype : "uint32" or "uint64", optional
             As uint32 a 31-bit method gives one word a draw, a 64-bit method its low half first;
-            as uint64 methods of 31 and 32 bits give two draws, the first in the low half.
+            as uint64 methods of 31 and 32 bits give two draws, the first in the low half. None: that of
+            ``out``, or uint32.
         out : ndarray, optional
             Filled in place: of this shape and dtype, C-contiguous.
 
@@ -196,7 +197,7 @@ class Rng:
         TypeError, ValueError
             Another dtype, a negative size, or an ``out`` that would need a copy.
         """
-        kind = one_of("dtype", dtype, ("uint32", "uint64"))
+        kind = output_dtype(dtype, out, ("uint32", "uint64"))
         values = self._filled(shape, kind, out)
         return int(values[()]) if shape is None and out is None else values
 

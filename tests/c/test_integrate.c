@@ -356,7 +356,7 @@ static void test_bad_options_are_refused_before_any_call(void **state) {
                                    "min_samples is 1",
                                    "max_samples is 100",
                                    "range of values is [2, 1]",
-                                   "dims is 0",
+                                   "d is 0",
                                    "pattern is 99",
                                    "scramble"};
     for (int k = 0; k < 11; ++k) bad[k] = good;

@@ -314,3 +314,14 @@ def test_threads_take_turns() -> None:
 def test_bad_input_is_named(call: Any, error: type[Exception], match: str) -> None:
     with pytest.raises(error, match=match):
         call()
+
+
+def test_out_sets_the_dtype() -> None:
+    for call, kinds in (("random", ("float64", "float32")), ("bits", ("uint32", "uint64"))):
+        for kind in kinds:
+            out = np.zeros(5, kind)
+            made = getattr(sf.Rng("sfc64", seed=1), call)(out=out)
+            assert made is out
+            assert np.array_equal(out, getattr(sf.Rng("sfc64", seed=1), call)(5, dtype=kind))
+        with pytest.raises(TypeError, match="int16"):
+            getattr(sf.Rng("sfc64", seed=1), call)(out=np.zeros(5, "int16"))
