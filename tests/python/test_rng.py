@@ -134,7 +134,7 @@ def read_only(array: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize(
     ("out", "error"),
     [
-        (np.zeros(5, dtype=np.float32), TypeError),
+        (np.zeros(5, dtype=np.int32), TypeError),
         (np.zeros(5, dtype=">f8"), TypeError),
         ([0.0] * 5, TypeError),
         (np.zeros(4), ValueError),
