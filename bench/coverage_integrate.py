@@ -63,7 +63,9 @@ def run(job: Job) -> list[tuple[float, float, int, str]]:
     options = {"replicates": job.replicates, "value_range": case.value_range if job.bounded else None}
     found = []
     for seed in job.seeds:
-        r = sf.integrate(case.f, case.d, job.pattern, job.tolerance, seed=seed, max_samples=job.max_samples, **options)
+        r = sf.integrate(
+            case.f, case.d, job.pattern, atol=job.tolerance, seed=seed, max_samples=job.max_samples, **options
+        )
         found.append((r.value - case.exact, r.half_width, r.samples, r.stop_reason))
     return found
 
@@ -73,7 +75,7 @@ def errors_by_look(job: Job) -> list[list[float]]:
     case = INTEGRANDS[job.case]
     squares: list[list[float]] = []
     for seed in job.seeds:
-        r = sf.integrate(case.f, case.d, job.pattern, 1e-300, seed=10**6 + seed, replicates=job.replicates,
+        r = sf.integrate(case.f, case.d, job.pattern, atol=1e-300, seed=10**6 + seed, replicates=job.replicates,
                          max_samples=job.max_samples)  # fmt: skip
         squares.append([(look.value - case.exact) ** 2 for look in r.history])
     return squares

@@ -7,6 +7,7 @@
 #include <exception>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "bind.h"
 #include "sunfleck/integrate.h"
@@ -16,6 +17,7 @@ namespace {
 // The function of Python's, called from C on the thread that asked for the integral.
 struct integrand {
     nb::object function;
+    size_t components;
     std::exception_ptr failure;
 
     // The points are a copy of their own, since Python may keep them.
@@ -27,6 +29,7 @@ struct integrand {
         nb::ndarray<nb::numpy, double, nb::ndim<2>> block(copy.release(), {count, dims}, owner);
         auto answer =
             nb::cast<nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>>(function(block), false);
+        count *= components;
         if (answer.shape(0) != count) throw nb::value_error("the function's values must be as many as the points");
         std::copy(answer.data(), answer.data() + count, values);
     }
@@ -64,15 +67,19 @@ nb::typed<nb::dict, nb::str, nb::any> as_dict(const sf_integral &result) {
     d["stop_reason"] = sf_integral_stop_name(result.stop);
     d["replicates"] = result.replicates;
     d["shifted"] = result.shifted != 0;
+    d["folded"] = result.folded != 0;
     d["history"] = history;
     return d;
 }
 
-nb::typed<nb::dict, nb::str, nb::any> integrate(nb::object function, const std::string &pattern,
-                                                const std::string &scramble, uint32_t dims, uint64_t seed,
-                                                double absolute, double relative, double confidence,
-                                                uint64_t min_samples, uint64_t max_samples, uint32_t replicates,
-                                                double low, double high, uint32_t threads) {
+using ends = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+// A dict for each component. Of no ends, the region is the unit cube.
+nb::typed<nb::list, nb::typed<nb::dict, nb::str, nb::any>> integrate(nb::object function, uint32_t components, const std::string &pattern,
+                                        const std::string &scramble, uint32_t dims, uint64_t seed, double absolute,
+                                        double relative, double confidence, uint64_t min_samples,
+                                        uint64_t max_samples, uint32_t replicates, double low, double high,
+                                        uint32_t threads, const ends &lower, const ends &upper) {
     sf_integrate_options options = sf_integrate_options_default();
     sf_error error;
     raise_unless_ok(sf_pattern_find(pattern.c_str(), &options.pattern, &error), error);
@@ -88,17 +95,27 @@ nb::typed<nb::dict, nb::str, nb::any> integrate(nb::object function, const std::
     options.low = low;
     options.high = high;
     options.threads = threads;
-    integrand user{function, nullptr};
-    auto result = std::make_unique<sf_integral>();
-    call([&](sf_error *refused) { return sf_integrate(call_integrand, &user, &options, result.get(), refused); });
+    if (lower.shape(0) != upper.shape(0) || (lower.shape(0) != 0 && lower.shape(0) != dims))
+        throw nb::value_error("the bounds must be as many as the dimensions");
+    if (lower.shape(0) != 0) {
+        options.lower = lower.data();
+        options.upper = upper.data();
+    }
+    integrand user{function, components, nullptr};
+    std::vector<sf_integral> results(components);
+    call([&](sf_error *refused) {
+        return sf_integrate_vector(call_integrand, &user, &options, components, results.data(), refused);
+    });
     if (user.failure) std::rethrow_exception(user.failure);
-    return as_dict(*result);
+    nb::list found;
+    for (const sf_integral &result : results) found.append(as_dict(result));
+    return found;
 }
 
 }  // namespace
 
 void bind_integrate(nb::module_ &m) {
-    m.def("integrate", &integrate, "function"_a, "pattern"_a, "scramble"_a, "dims"_a, "seed"_a, "absolute"_a,
-          "relative"_a, "confidence"_a, "min_samples"_a, "max_samples"_a, "replicates"_a, "low"_a, "high"_a,
-          "threads"_a);
+    m.def("integrate", &integrate, "function"_a, "components"_a, "pattern"_a, "scramble"_a, "dims"_a, "seed"_a,
+          "absolute"_a, "relative"_a, "confidence"_a, "min_samples"_a, "max_samples"_a, "replicates"_a, "low"_a,
+          "high"_a, "threads"_a, "lower"_a, "upper"_a);
 }

@@ -151,7 +151,7 @@ def _pi_series(pattern: str, found: Integral) -> list[Series]:
 
 def _pi_error(studio: Studio) -> Plate:
     found = {
-        pattern: integrate(_circle, d=2, pattern=pattern, tolerance=PI_TOLERANCE, seed=studio.seed)
+        pattern: integrate(_circle, d=2, pattern=pattern, atol=PI_TOLERANCE, seed=studio.seed)
         for pattern in ("random", "sobol")
     }
     if any(integral.stop_reason == "interrupted" for integral in found.values()):

@@ -161,7 +161,7 @@ static void test_a_tolerance_relative_to_the_value_and_many_dimensions(void **st
     assert_true(fabs(result.value - exact) <= 2.0 * result.half_width);
     options.dims = 5000; /* rows of a block: 52 */
     options.max_samples = 1024;
-    watch many = {0};
+    watch many = {.threshold = 0.5};
     assert_int_equal(integrate(step, &many, &options).stop, SF_INTEGRAL_MAX_SAMPLES);
     assert_true(many.calls > 10);
 }
@@ -199,7 +199,8 @@ static void test_samples_that_are_all_equal_do_not_mean_no_error(void **state) {
             double scale = constants[c] != 0.0 ? fabs(constants[c]) : 1.0;
             assert_true(result.half_width >= log(20.0) / (double)result.samples * scale * (1.0 - 1e-12));
             assert_true(result.half_width <= 1e-2 && fabs(result.value - constants[c]) <= 1e-15 * scale);
-            assert_int_equal(result.stop, SF_INTEGRAL_MET);
+            /* Of what may hide among zeros no scale is known. */
+            assert_int_equal(result.stop, constants[c] == 0.0 ? SF_INTEGRAL_SUSPICIOUS : SF_INTEGRAL_MET);
         }
 }
 
@@ -221,11 +222,11 @@ static void test_an_event_that_no_sample_saw_is_allowed_for(void **state) {
     assert_true(covered >= 190); /* 0.95; Student's interval alone would have covered 0.1 */
 }
 
-static void test_replicates_that_agree_by_chance_do_not_mean_no_error(void **state) {
+static void test_a_step_that_few_points_see_is_covered(void **state) {
     (void)state;
-    /* Of 0.51, 4 stratified points see 2 in 0.96 of the replicates: all 16 agree in half of the
-     * seeds, at 0.5. */
-    int agreed = 0;
+    /* Of 0.51, 4 stratified points see 2 in 0.96 of the replicates: unless these are shifted and folded, all 16
+     * agree in half of the seeds, at 0.5. */
+    int covered = 0;
     for (uint64_t seed = 0; seed < 50; ++seed) {
         watch w = {.threshold = 0.51};
         sf_integrate_options options = sf_integrate_options_default();
@@ -234,10 +235,10 @@ static void test_replicates_that_agree_by_chance_do_not_mean_no_error(void **sta
         options.min_samples = options.max_samples = 64;
         options.absolute = 1e-9;
         sf_integral result = integrate(step, &w, &options);
-        agreed += result.value == 0.5;
-        assert_true(fabs(result.value - 0.51) <= result.half_width);
+        assert_true(result.folded && result.half_width > 0);
+        covered += fabs(result.value - 0.51) <= result.half_width;
     }
-    assert_true(agreed > 10);
+    assert_true(covered >= 43); /* of 0.95 * 50, three binomial deviations below */
 }
 
 static void test_a_known_range_makes_random_a_confidence_sequence(void **state) {
@@ -391,7 +392,7 @@ int main(void) {
         cmocka_unit_test(test_the_same_seed_gives_the_same_bits_for_any_threads),
         cmocka_unit_test(test_samples_that_are_all_equal_do_not_mean_no_error),
         cmocka_unit_test(test_an_event_that_no_sample_saw_is_allowed_for),
-        cmocka_unit_test(test_replicates_that_agree_by_chance_do_not_mean_no_error),
+        cmocka_unit_test(test_a_step_that_few_points_see_is_covered),
         cmocka_unit_test(test_a_known_range_makes_random_a_confidence_sequence),
         cmocka_unit_test(test_a_value_outside_its_range_is_refused),
         cmocka_unit_test(test_values_that_are_not_finite_are_counted_and_left_out),

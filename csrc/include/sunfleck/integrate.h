@@ -32,8 +32,9 @@
 extern "C" {
 #endif
 
-/* The function: fills values[0 .. count - 1] for `count` rows of `dims` coordinates in [0,1), and
- * returns 0; anything else stops the integration, as interrupted. It is called on the caller's
+/* The function: fills values[0 .. count - 1] for `count` rows of `dims` coordinates in [0,1), or
+ * within the bounds of the options (of several components, values[i * components + k] is the k-th
+ * of row i), and returns 0; anything else stops the integration, as interrupted. It is called on the caller's
  * thread. The points may be overwritten. */
 typedef int (*sf_integrand)(void *user, size_t count, uint32_t dims, const double *points, double *values);
 
@@ -43,8 +44,11 @@ typedef enum sf_integral_stop {
     SF_INTEGRAL_INTERRUPTED, /* the function said so: value and half-width are the last look's */
     SF_INTEGRAL_SUSPICIOUS,  /* met, or max_samples, but the half-width cannot be trusted: samples that
                                 are not finite, or the means of the replicates follow the most
-                                extreme sample of each (correlated beyond 0.999, and half of their
-                                variance): a heavy tail, or an event seen less than about once in each */
+                                extreme sample of each (correlated beyond 0.999, and without it they
+                                have less than half of their variance), or the most extreme of all
+                                spread as those of a law without a variance (Hill's index above 1/2):
+                                a heavy tail, or an event seen less than about once in each; or all
+                                samples are 0 and no range says what may hide between them */
     SF_INTEGRAL_STOP_COUNT
 } sf_integral_stop;
 
@@ -73,6 +77,9 @@ typedef struct sf_integrate_options {
                              confidence sequence, which holds at every count and not only in the
                              limit. Default: infinite, unknown */
     uint32_t threads;     /* that make the points: 1 (default) ..; 0: one for each processor. Changes no bit */
+    const double *lower;  /* `dims` ends of the region each, lower below upper, -infinity and infinity */
+    const double *upper;  /* allowed; read during the call. Default NULL, both: the unit cube. A range
+                             of values needs finite bounds; it is the function's, before the volume */
 } sf_integrate_options;
 
 sf_integrate_options sf_integrate_options_default(void);
@@ -90,12 +97,21 @@ typedef struct sf_integral {
     uint64_t nonfinite; /* of them, NaN or infinite: counted, never averaged in */
     sf_integral_stop stop;
     uint32_t replicates;
-    int shifted;    /* 1 where replicates were shifted at random */
+    int shifted;    /* 1 where replicates were shifted at random, the seed leaving them in place */
+    int folded;     /* 1 where they were shifted and folded, so that a step shows in their spread */
     uint32_t looks; /* entries of `history` */
     sf_integral_look history[SF_INTEGRATE_MAX_LOOKS];
 } sf_integral;
 
-/* Integrates `function` over [0,1)^dims.
+/* Integrates `function` over [0,1)^dims, or between the bounds.
+ *
+ * Points that lie at random within strata (sobol and sz but under shift, latin, jittered, multijittered,
+ * orthogonal; halton and hammersley under owen) are shifted modulo 1 and folded, x -> 1 - |2x - 1|,
+ * by each replicate for itself. All replicates else may see the same number of points beside a step
+ * across an axis, an error that no spread shows. docs/integrate.md has what this costs.
+ *
+ * An infinite end is reached by t / (1 - t), two by s / (1 - s^2), s = 2t - 1: functions that fall
+ * faster than x^-2 stay bounded.
  *
  * A half-width is never 0. Where all replicates (all samples, of random) agree to the last bit,
  * an event may have been missed: the half-width is then log(1 / (1 - confidence)) / N of the
@@ -115,6 +131,12 @@ typedef struct sf_integral {
  * thread-safe if the function is. */
 sf_status sf_integrate(sf_integrand function, void *user, const sf_integrate_options *options, sf_integral *result,
                        sf_error *error);
+
+/* The same for a function of several components, on the same points: results[0 .. components - 1],
+ * each with its own value, half-width, history and stop. Goes on until every component has met the
+ * tolerance; each half-width holds with the confidence for itself, not all at once. */
+sf_status sf_integrate_vector(sf_integrand function, void *user, const sf_integrate_options *options,
+                              uint32_t components, sf_integral *results, sf_error *error);
 
 #ifdef __cplusplus
 }
