@@ -368,8 +368,8 @@ def integrate(
 def _integral(found: list[dict[str, Any]], shape: tuple[int, ...], confidence: float) -> Integral:
     """One record of the components' records."""
 
-    def gather(values: Sequence[Any]) -> Any:
-        return np.array(values).reshape(shape) if shape else values[0]
+    def gather(ones: Sequence[Any]) -> Any:
+        return np.array(ones).reshape(shape) if shape else ones[0]
 
     history = tuple(
         IntegralLook(looks[0][0], gather([look[1] for look in looks]), gather([look[2] for look in looks]))
