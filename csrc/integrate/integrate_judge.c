@@ -9,6 +9,7 @@
 
 #define HEAVY_SHARE 0.5        /* of the means' variance, by one sample of each: suspicious … */
 #define HEAVY_CONFIDENCE 0.999 /* … if the means follow those samples beyond this doubt */
+#define FAR 3.0                /* standard deviations from the mean: an extreme sample of no smooth function's */
 #define HEAVY_INDEX 0.5        /* the tail's index from which on the variance is infinite */
 #define TOP 16                 /* the most extreme samples, which a tail that goes on spreads, too … */
 #define TOP_INDEX 0.25         /* … by this: known to a quarter of the index */
@@ -189,14 +190,18 @@ static double extreme_part(const tally *t, double centre) {
 /* Whether the means of the replicates follow the most extreme sample of each: a heavy tail, or an
  * event that is seen less than about once in each. Correlation is not enough: a shift moves mean and
  * extreme of a smooth function alike. Of a tail the means are made of those samples: without them
- * the means differ less. */
+ * the means differ less. And these samples lie far out, if they are a tail. */
 static int follows_extremes(const integration *in, const component *c) {
     sf_moments all = all_samples(in, c);
     double R = (double)in->options.replicates, dof = R - 2.0, sum[2] = {0.0, 0.0}, m2[3] = {0.0, 0.0, 0.0};
+    double farthest = 0.0;
     for (uint32_t r = 0; r < in->options.replicates; ++r) {
+        double extreme = extreme_part(&c->tallies[r], all.mean);
         sum[0] += (c->tallies[r].moments.mean - all.mean) / R;
-        sum[1] += extreme_part(&c->tallies[r], all.mean) / R;
+        sum[1] += extreme / R;
+        farthest = fmax(farthest, fabs(extreme) * (double)c->tallies[r].moments.count);
     }
+    if (!(farthest > FAR * sf_moments_sample_deviation(&all))) return 0;
     for (uint32_t r = 0; r < in->options.replicates; ++r) {
         double mean = c->tallies[r].moments.mean - all.mean - sum[0];
         double extreme = extreme_part(&c->tallies[r], all.mean) - sum[1];

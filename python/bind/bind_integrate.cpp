@@ -75,11 +75,10 @@ nb::typed<nb::dict, nb::str, nb::any> as_dict(const sf_integral &result) {
 using ends = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
 // A dict for each component. Of no ends, the region is the unit cube.
-nb::typed<nb::list, nb::typed<nb::dict, nb::str, nb::any>> integrate(nb::object function, uint32_t components, const std::string &pattern,
-                                        const std::string &scramble, uint32_t dims, uint64_t seed, double absolute,
-                                        double relative, double confidence, uint64_t min_samples,
-                                        uint64_t max_samples, uint32_t replicates, double low, double high,
-                                        uint32_t threads, const ends &lower, const ends &upper) {
+nb::typed<nb::list, nb::typed<nb::dict, nb::str, nb::any>> integrate(
+    nb::object function, uint32_t components, const std::string &pattern, const std::string &scramble, uint32_t dims,
+    uint64_t seed, double absolute, double relative, double confidence, uint64_t min_samples, uint64_t max_samples,
+    uint32_t replicates, double low, double high, uint32_t threads, const ends &lower, const ends &upper) {
     sf_integrate_options options = sf_integrate_options_default();
     sf_error error;
     raise_unless_ok(sf_pattern_find(pattern.c_str(), &options.pattern, &error), error);

@@ -252,8 +252,8 @@ def integrate(
         leave more points to each: by 16 most of the former is won.
     value_range : (low, high), optional
         Where the values of f, all components, are known to lie; others are refused. Not with
-        infinite bounds. With pattern "random" the
-        interval then is a confidence sequence, which holds for any such f at every count.
+        infinite bounds. With pattern "random" the interval then is a confidence sequence, which
+        holds for any such f at every count.
     scramble : str or None
         As in `points`. Where it leaves the pattern, or a coordinate, where it is (None does),
         each replicate is shifted at random, modulo 1.
@@ -289,9 +289,10 @@ def integrate(
 
     The copies of patterns that are random within their strata (sobol and sz but under "shift",
     latin, jittered, multijittered, orthogonal; halton and hammersley under "owen") are shifted and
-    folded, ``x -> 1 - abs(2x - 1)``, each by itself: else all may see the same count beside a step,
-    which is an error without a spread. Bounds are reached by rational maps, t / (1 - t) for an
-    infinite end, so that functions that fall faster than x^-2 stay bounded.
+    folded, ``x -> 1 - abs(2x - 1)``, each by itself, three of four in each dimension: else all may
+    see the same count beside a step, which is an error without a spread. Bounds are reached by
+    rational maps, t / (1 - t) for an infinite end, so that functions that fall faster than x^-2
+    stay bounded.
 
     Smooth functions of up to 3 dimensions are `scipy.integrate.cubature`'s, which takes thousands
     of times fewer evaluations.

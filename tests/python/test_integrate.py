@@ -63,6 +63,40 @@ def test_a_plain_tolerance_is_relative_as_in_render_and_atol_is_absolute() -> No
     assert either.half_width <= 1e3
 
 
+@pytest.mark.parametrize("pattern", ["sobol", "random", "jittered"])
+def test_values_may_be_arrays(pattern: str) -> None:
+    calls = 0
+
+    def powers(x: Block) -> Block:
+        nonlocal calls
+        calls += len(x)
+        return x[:, :1, None] ** np.arange(6.0).reshape(2, 3)
+
+    r = sf.integrate(powers, 1, pattern, rtol=1e-2)
+    assert calls == r.samples
+    assert r.value.shape == r.half_width.shape == r.trusted.shape == (2, 3)
+    assert (abs(r.value - 1 / np.arange(1, 7).reshape(2, 3)) <= 3 * r.half_width).all()
+    assert (r.half_width <= 1e-2 * r.value).all()
+    assert r.stop_reason == "met"
+    assert np.array_equal(r.history[-1].value, r.value)
+    # A component alone takes the same points.
+    alone = sf.integrate(lambda x: x[:, 0] ** 5, 1, pattern, rtol=1e-2)
+    shared = {look.samples: look.value[1, 2] for look in r.history}
+    assert shared[alone.samples] == alone.value or pattern == "random"
+    assert r == sf.integrate(powers, 1, pattern, rtol=1e-2)
+    assert r != sf.integrate(powers, 1, pattern, rtol=1e-2, seed=1)
+    assert "[" in str(r)
+
+
+def test_a_tail_without_a_variance_is_suspicious_over_every_pattern() -> None:
+    exact, wrong = 2.5, 0
+    for pattern in ("random", "sobol", "halton", "latin"):
+        for seed in range(20):
+            r = sf.integrate(lambda x: x[:, 0] ** -0.6, 1, pattern, atol=0.1, seed=seed, max_samples=2**20)
+            wrong += r.stop_reason == "met" and abs(r.value - exact) > r.half_width
+    assert wrong <= 1
+
+
 def test_the_same_seed_gives_the_same_result_for_any_threads() -> None:
     runs = [
         sf.integrate(circle, 2, threads=threads, seed=seed) for threads, seed in ((1, 5), (3, 5), (None, 5), (1, 6))
@@ -145,7 +179,14 @@ def test_a_step_beside_something_smooth_is_covered(pattern: str, scramble: str |
 
 @pytest.mark.parametrize(
     ("pattern", "scramble"),
-    [("halton", "default"), ("lattice", "shift"), ("hammersley", "default"), ("sobol", "shift"), ("sobol", "owen")],
+    [
+        ("r2", "default"),
+        ("halton", "default"),
+        ("lattice", "shift"),
+        ("hammersley", "default"),
+        ("sobol", "shift"),
+        ("sobol", "owen"),
+    ],
 )
 def test_smooth_functions_are_not_suspected(pattern: str, scramble: str) -> None:
     for seed in range(10):
