@@ -63,6 +63,7 @@ class Worker:
         if self._process is not None:
             self._process.communicate()
             self._process = None
+        self._said.close()
 
 
 def _serve(effort: float) -> None:

@@ -448,5 +448,5 @@ def test_ctrl_c_draws_what_there_is_and_exits_with_130(tmp_path: Path) -> None:
 def test_a_chart_shows_itself_in_a_notebook() -> None:
     made = sf.chart.generators("sfc64", quick=True)
     assert made._repr_png_().startswith(b"\x89PNG")
-    with pytest.raises(ValueError, match="no chart of 'pictures'"):
+    with pytest.raises(ValueError, match="kind is 'pictures'"):
         sf.chart("pictures")  # type: ignore[operator]
