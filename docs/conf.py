@@ -165,7 +165,7 @@ def cli_help() -> dict[str, str]:
 
 def reference_pages() -> dict[str, list[str]]:
     """Pages by caption; mapping_plane.h and its like are on the page of mapping.h."""
-    names = {header.stem for header in HEADERS.glob("*.h")}
+    names = {header.stem for header in HEADERS.glob("*.h") if not header.stem.startswith("exact_")}
     names -= {"sunfleck", "lanczos_table"}  # the umbrella, and a table that is generated
     own = sorted(name for name in names if not any(name.startswith(f"{other}_") for other in names))
     return {
