@@ -140,7 +140,11 @@ TETRAHEDRON_FACES = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]], dtype
 
 
 class Maker:
-    """Draws a world. Lengths are of a stage of some 2 units about the origin, z up, until `finish`."""
+    """Draws a world. Lengths are of a stage of some 2 units about the origin, z up, until `finish`.
+
+    One in five is a room of large lamps, from one below the count that makes a tree of lights, where rays that
+    materials chose often hit a lamp: the weights by which both ways of finding light are combined matter most there.
+    """
 
     def __init__(self, seed: int) -> None:
         self.rng = np.random.default_rng([seed, 0x5CE9E])
@@ -151,6 +155,10 @@ class Maker:
         self.bounces = int(rng.choice([0, 1, 2, 3, 4, 6], p=[0.04, 0.2, 0.26, 0.25, 0.15, 0.1]))
         self.narrow = rng.random() < 0.4  # smooth and glossy surfaces; lights are large then
         self.rough_only = rng.random() < 0.25
+        self.lamp_room = rng.random() < 0.2
+        if self.lamp_room:
+            self.room, self.fogged, self.narrow = True, False, False
+            self.bounces = max(self.bounces, 2)
 
     def pick(self, *values: Any) -> Any:
         return values[int(self.rng.integers(len(values)))]
@@ -251,7 +259,7 @@ class Maker:
     # -- what shines --
 
     def lamp_size(self) -> float:
-        low = 0.25 if self.narrow else 0.05
+        low = 0.25 if self.narrow or self.lamp_room else 0.05
         return float(self.rng.uniform(low, 0.4))
 
     def add_lamp(self, kind: str, share: float) -> None:
@@ -321,16 +329,16 @@ class Maker:
     def make(self) -> World:
         rng = self.rng
         wanted = int(self.pick(*PRIMITIVE_COUNTS))
-        lights = int(self.pick(*LIGHT_COUNTS))
+        lights = int(self.pick(*(n for n in LIGHT_COUNTS if not self.lamp_room or 7 <= n <= 16)))
         self.add_walls()
-        placed = rng.random() < 0.25
+        placed = rng.random() < 0.25 and not self.lamp_room
         for group in range(1, int(rng.integers(1, 3)) + 1 if placed else 1):
             self.add_instances(group)
         sky = self.sky(lights)
         outer = len(sky["suns"]) + (sky["environment"] is not None)
         kinds = self.pick(("triangle",), ("rectangle",), ("triangle", "rectangle"), ("sphere",), ("disk",),
                           ("triangle", "rectangle", "sphere", "disk"))  # fmt: skip
-        own = max(int(self.room or self.fogged), lights - outer * int(rng.integers(2)))
+        own = max(int(self.room or self.fogged), lights - outer * int(rng.integers(2) and not self.lamp_room))
         for _ in range(own):
             self.add_lamp(self.pick(*kinds), 1 / own)
         count = World(self.items, {}).primitives
@@ -346,7 +354,7 @@ class Maker:
         order = rng.permutation(len(self.items))
         world = World([self.items[i] for i in order], self.camera(), fog=fog, max_bounces=self.bounces, **sky)
         self.finish(world)
-        flags = [name for name, on in (("room", self.room), ("fog", fog), ("instances", placed)) if on]
+        flags = [name for name, on in (("room", self.room), ("large lamps", self.lamp_room), ("fog", fog), ("instances", placed)) if on]
         world.story = (
             f"{world.primitives} primitives, {own} lamps ({'/'.join(kinds)}), {len(sky['suns'])} suns, "
             f"{'an environment, ' if sky['environment'] else ''}{'a background, ' if any(sky['background']) else ''}"
