@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "base/platform.h"
-#include "base/replacement.h"
+#include "base/atomic_file.h"
 
 #define MAGIC_BYTES "\x89SFCK\r\n\x1a" /* as PNG's: a transfer as text changes it */
 #define MAGIC_SIZE 8

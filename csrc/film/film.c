@@ -10,13 +10,13 @@
 #include <string.h>
 
 #include "base/error.h"
-#include "base/pages.h"
+#include "base/page_cache.h"
 #include "base/platform.h"
 #include "film/aov.h"
 #include "film/mask.h"
 #include "film/signed_filter.h"
 #include "film/stopping.h"
-#include "scene/scene_data.h"
+#include "scene/scene_internal.h"
 
 #define OWN_CHANNELS 7
 #define MAX_ATTRIBUTES 40

@@ -4,7 +4,7 @@
 #ifndef SUNFLECK_MAPPING_KERNELS_H
 #define SUNFLECK_MAPPING_KERNELS_H
 
-#include "base/level.h"
+#include "base/isa_dispatch.h"
 #include "sunfleck/mapping.h"
 
 #define SF_MAPPING_MAX_COMPONENTS 12 /* of all parameters of a mapping together */

@@ -5,7 +5,7 @@
 #ifndef SUNFLECK_HALTON_KERNELS_H
 #define SUNFLECK_HALTON_KERNELS_H
 
-#include "base/level.h"
+#include "base/isa_dispatch.h"
 
 /* ---- permuted digits ----
  *

@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-#include "base/level.h"
+#include "base/isa_dispatch.h"
 #include "points/points_kernels.h"
 #include "sunfleck/points.h"
 

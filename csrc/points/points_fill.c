@@ -4,7 +4,7 @@
 /* Filling arrays with points, by chunks on threads. */
 #include "base/error.h"
 #include "base/platform.h"
-#include "points/crew.h"
+#include "points/thread_team.h"
 #include "points/points_set.h"
 #include "sunfleck/points.h"
 

@@ -4,7 +4,7 @@
 #ifndef SUNFLECK_POINTS_KERNELS_H
 #define SUNFLECK_POINTS_KERNELS_H
 
-#include "base/level.h"
+#include "base/isa_dispatch.h"
 #include "sunfleck/points.h"
 
 typedef enum sf_number_type { SF_NUMBER_F32 = 0, SF_NUMBER_F64, SF_NUMBER_U32 } sf_number_type;

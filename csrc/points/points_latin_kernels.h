@@ -4,7 +4,7 @@
 #ifndef SUNFLECK_POINTS_LATIN_KERNELS_H
 #define SUNFLECK_POINTS_LATIN_KERNELS_H
 
-#include "base/level.h"
+#include "base/isa_dispatch.h"
 #include "points/permutation.h"
 
 /* A latin hypercube laid out for filling rows in order: what belongs to a word of a row is

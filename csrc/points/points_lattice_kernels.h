@@ -4,7 +4,7 @@
 #ifndef SUNFLECK_POINTS_LATTICE_KERNELS_H
 #define SUNFLECK_POINTS_LATTICE_KERNELS_H
 
-#include "base/level.h"
+#include "base/isa_dispatch.h"
 
 typedef struct sf_lattice_kernels {
     /* Word d of row r: begins[d] + factors[r] * steps[d] modulo 2^64, row-major; the low halves

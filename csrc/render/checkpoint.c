@@ -15,7 +15,7 @@
 
 #include "base/container.h"
 #include "base/error.h"
-#include "base/replacement.h"
+#include "base/atomic_file.h"
 #include "film/mask.h"
 #include "film/render_options.h"
 #include "film/stopping.h"

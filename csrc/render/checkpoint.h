@@ -8,7 +8,7 @@
 #include <stdbool.h>
 
 #include "film/film_internal.h"
-#include "render/goal.h"
+#include "render/relmse_target.h"
 
 /* Where the rounds are. */
 typedef struct sf_round_state {

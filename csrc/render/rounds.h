@@ -11,7 +11,7 @@
  * With a tolerance, or a fixed count, all open pixels move on together until they are closed.
  * With a budget alone a falling target takes the tolerance's place: the pixels beyond it are
  * brought on, the least sampled first, until none is, and the target falls. So it is with a goal
- * for the whole picture, whose threshold of gain is told from it; see goal.h. */
+ * for the whole picture, whose threshold of gain is told from it; see relmse_target.h. */
 #ifndef SUNFLECK_ROUNDS_H
 #define SUNFLECK_ROUNDS_H
 
@@ -19,7 +19,7 @@
 #include "film/film_internal.h"
 #include "film/stopping.h"
 #include "render/checkpoint.h"
-#include "render/goal.h"
+#include "render/relmse_target.h"
 #include "sunfleck/rng.h"
 #include "trace/batch.h"
 
@@ -31,7 +31,7 @@ enum { SF_RUNNING = 0, SF_OUT_OF_TIME, SF_INTERRUPTED, SF_SPENT, SF_PAUSED };
 typedef struct sf_rounds_worker {
     SF_ALIGNED(sf_atomic_size) samples; /* traced so far */
     uint64_t done, met;                 /* pixels of the picture, by its decisions */
-    double worst;                       /* of the pixels it surveyed; see choosing.c */
+    double worst;                       /* of the pixels it surveyed; see pixel_selection.c */
     uint32_t least;
     uint64_t chosen;
     sf_rng stream; /* seeds = thread, shared */
@@ -126,13 +126,13 @@ static inline void sf_rounds_each_cell(sf_rounds *r, unsigned worker, uint32_t t
                 visit(r, r->workers + worker, y * r->film->cell_columns + x);
 }
 
-/* sampling.c: takes the round's samples of a tile; an sf_pool_work_fn over the tiles listed. */
+/* tile_sampling.c: takes the round's samples of a tile; an sf_pool_work_fn over the tiles listed. */
 void sf_rounds_sample_tile(void *user, unsigned worker, size_t item);
 
-/* choosing.c: lists the tiles that have an active pixel. */
+/* pixel_selection.c: lists the tiles that have an active pixel. */
 void sf_rounds_list_tiles(sf_rounds *r);
 
-/* choosing.c: sets the next lap: its pixels, where it begins and where it looks. False: nothing is
+/* pixel_selection.c: sets the next lap: its pixels, where it begins and where it looks. False: nothing is
  * left. */
 bool sf_rounds_begin_lap(sf_rounds *r);
 

@@ -4,7 +4,7 @@
 #ifndef SUNFLECK_RNG_KERNELS_H
 #define SUNFLECK_RNG_KERNELS_H
 
-#include "base/level.h"
+#include "base/isa_dispatch.h"
 #include "sunfleck/rng.h"
 
 #define SF_MT19937_TWIST 0x9908b0dfu

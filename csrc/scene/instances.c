@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "base/error.h"
-#include "scene/scene_data.h"
+#include "scene/scene_internal.h"
 
 #define CONDITION_LIMIT 3e5 /* Embree inverts transforms in single precision */
 #define LEAST_DETERMINANT 1e-36
@@ -156,7 +156,7 @@ static sf_status check_reach(const sf_prototype *p, const sf_instances *instance
     return SF_STATUS_OK;
 }
 
-/* The rows of the dark meshes, and an instance in Embree that placing.c gives its transform. */
+/* The rows of the dark meshes, and an instance in Embree that instance_transform.c gives its transform. */
 static sf_status place_dark(sf_scene *scene, uint32_t number, const float *transform, const float *albedo,
                             sf_error *error) {
     const sf_prototype *p = scene->prototypes + number;

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "scene/light_tree.h"
-#include "scene/scene_data.h"
+#include "scene/scene_internal.h"
 
 /* From so many pieces on the tree has the lower error per second; see docs/scene.md, which has the
  * figures, and bench/many_lights.py, which measures them. */

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/platform.h"
-#include "scene/scene_data.h"
+#include "scene/scene_internal.h"
 
 #define PI 3.14159265358979323846
 

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "base/platform.h"
 #include "scene/light_tree.h"
-#include "scene/scene_data.h"
+#include "scene/scene_internal.h"
 #include "sunfleck/mapping.h"
 
 #define PI 3.14159265358979323846

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/error.h"
-#include "scene/scene_data.h"
+#include "scene/scene_internal.h"
 
 #define IOR_LOWEST 0.1f
 #define IOR_HIGHEST 10.0f

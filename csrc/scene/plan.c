@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#include "scene/scene_data.h"
+#include "scene/scene_internal.h"
 
 /* The share of all directions that an environment's light has to come from for the last surface
  * ray to lower its error by more than the time it takes: bench/surface_ray.py. */

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/platform.h"
-#include "scene/scene_data.h"
+#include "scene/scene_internal.h"
 
 #define PAGE_SIZE 4096
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/error.h"
-#include "scene/scene_data.h"
+#include "scene/scene_internal.h"
 
 #define LEAST_RADIUS 1e-15f /* squares stay floats */
 

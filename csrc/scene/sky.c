@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/error.h"
-#include "scene/scene_data.h"
+#include "scene/scene_internal.h"
 #include "sunfleck/mapping.h"
 
 #define PI 3.14159265358979323846

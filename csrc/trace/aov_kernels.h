@@ -6,7 +6,7 @@
 #ifndef SUNFLECK_AOV_KERNELS_H
 #define SUNFLECK_AOV_KERNELS_H
 
-#include "base/level.h"
+#include "base/isa_dispatch.h"
 #include "film/aov.h"
 #include "trace/batch.h"
 

@@ -15,9 +15,9 @@
 
 #include "base/platform.h"
 #include "film/film_internal.h"
-#include "scene/scene_data.h"
+#include "scene/scene_internal.h"
 #include "sunfleck/film.h"
-#include "trace/coordinates.h"
+#include "trace/sample_dimensions.h"
 #include "trace/work_clock.h"
 
 typedef struct sf_camera_frame {

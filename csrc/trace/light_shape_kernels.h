@@ -7,7 +7,7 @@
 #ifndef SUNFLECK_LIGHT_SHAPE_KERNELS_H
 #define SUNFLECK_LIGHT_SHAPE_KERNELS_H
 
-#include "base/level.h"
+#include "base/isa_dispatch.h"
 #include "trace/batch.h"
 
 typedef struct sf_light_shape_kernels {

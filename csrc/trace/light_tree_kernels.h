@@ -6,7 +6,7 @@
 #ifndef SUNFLECK_LIGHT_TREE_KERNELS_H
 #define SUNFLECK_LIGHT_TREE_KERNELS_H
 
-#include "base/level.h"
+#include "base/isa_dispatch.h"
 #include "scene/light_tree.h"
 #include "trace/batch.h"
 

@@ -5,7 +5,7 @@
 #ifndef SUNFLECK_ORDER_KERNELS_H
 #define SUNFLECK_ORDER_KERNELS_H
 
-#include "base/level.h"
+#include "base/isa_dispatch.h"
 #include "trace/batch.h"
 
 typedef struct sf_order_kernels {

@@ -6,7 +6,7 @@
 #ifndef SUNFLECK_SHADE_KERNELS_H
 #define SUNFLECK_SHADE_KERNELS_H
 
-#include "base/level.h"
+#include "base/isa_dispatch.h"
 #include "trace/batch.h"
 
 typedef struct sf_shade_kernels {

@@ -4,7 +4,7 @@
 #ifndef SUNFLECK_UNIFORMITY_KERNELS_H
 #define SUNFLECK_UNIFORMITY_KERNELS_H
 
-#include "base/level.h"
+#include "base/isa_dispatch.h"
 #include "sunfleck/uniformity.h"
 
 /* Points as a column for each dimension: coordinate k of point i is values[k * stride + i]. */

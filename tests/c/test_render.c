@@ -5,7 +5,7 @@
  * errors that the film itself reports: 5 of them are exceeded once in 1.7 million. */
 #include "scenes.h"
 
-#include "base/pages.h"
+#include "base/page_cache.h"
 #include "trace/batch.h"
 #include "trace/gather_kernels.h"
 

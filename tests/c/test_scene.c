@@ -3,7 +3,7 @@
 
 #include "scenes.h"
 
-#include "scene/scene_data.h"
+#include "scene/scene_internal.h"
 
 static sf_scene *new_scene(void) {
     sf_scene *scene;

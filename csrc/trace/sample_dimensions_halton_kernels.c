@@ -12,7 +12,7 @@
  *   between two bounds less than 2^-35 apart.
  * - The word is a monotone function of the fraction: where both bounds have the same, it is the
  *   word. Where they have not, once in some 3,000 coordinates or less, sf_halton_sample is asked. */
-#include "trace/coordinates_halton_kernels.h"
+#include "trace/sample_dimensions_halton_kernels.h"
 
 #include <string.h>
 

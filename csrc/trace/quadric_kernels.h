@@ -5,7 +5,7 @@
 #ifndef SUNFLECK_ROUND_KERNELS_H
 #define SUNFLECK_ROUND_KERNELS_H
 
-#include "base/level.h"
+#include "base/isa_dispatch.h"
 #include "trace/batch.h"
 
 typedef struct sf_round_kernels {

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "trace/coordinates_kernels.h"
+#include "trace/sample_dimensions_kernels.h"
 
 #include <stdbool.h>
 
 #include "base/platform.h"
-#include "trace/coordinates_halton_kernels.h"
+#include "trace/sample_dimensions_halton_kernels.h"
 #include "trace/lanes.h"
 
 /* The key of a set of dimensions in one block, and from it of each dimension. */

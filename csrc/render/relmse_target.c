@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "render/goal.h"
+#include "render/relmse_target.h"
 
 #include <math.h>
 #include <string.h>

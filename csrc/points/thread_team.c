@@ -10,7 +10,7 @@
  * A system likes to wake a thread where its waker runs, for the sake of that processor's caches; but this
  * waker goes on working there, and the two would take turns. So members keep off the caller's
  * processor. */
-#include "points/crew.h"
+#include "points/thread_team.h"
 
 #include "base/error.h"
 #include "base/platform.h"

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/scene_data.h"
+#include "scene/scene_internal.h"
 
 #define LARGEST 16
 

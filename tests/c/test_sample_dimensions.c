@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "sunfleck/render.h"
-#include "trace/coordinates_kernels.h"
+#include "trace/sample_dimensions_kernels.h"
 
 enum { GROUPS = 5 * SF_MAX_BOUNCES };
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "base/replacement.h"
+#include "base/atomic_file.h"
 
 #include <errno.h>
 #include <fcntl.h>

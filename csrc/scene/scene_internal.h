@@ -167,7 +167,7 @@ typedef struct sf_prototype {
     RTCScene embree;
     sf_scene_mesh *meshes; /* the dark ones first: those that do not emit */
     uint32_t mesh_count, dark_count;
-    float offset[3];         /* what was subtracted from the vertices of the dark; see recentre.c */
+    float offset[3];         /* what was subtracted from the vertices of the dark; see scene_recenter.c */
     sf_scene_info dark, lit; /* bounds, counts and hash, before that */
 } sf_prototype;
 
@@ -182,7 +182,7 @@ struct sf_scene {
     uint32_t max_bounces;
     bool robust;
     float back;         /* 1 where robust, else 0: of the lift, how far a hit is moved back along its ray */
-    float shift[3];     /* what was subtracted from all coordinates; see recentre.c */
+    float shift[3];     /* what was subtracted from all coordinates; see scene_recenter.c */
     size_t moved_count; /* meshes that it was subtracted from */
     bool few;           /* so few primitives that rays are sorted for their packets */
     float middle[3];    /* of the bounds, as rays see them */
@@ -226,7 +226,7 @@ sf_status sf_light_table_fill(sf_scene *scene, const sf_light_source *sources, s
 /* light_choice.c: builds the tree where the scene's choice calls for one. */
 sf_status sf_lights_grow_tree(sf_scene *scene, const sf_light_source *sources, sf_error *error);
 
-/* light_near.c: whether a surface that reflects lies so near to a light that it is sampled by solid
+/* light_proximity.c: whether a surface that reflects lies so near to a light that it is sampled by solid
  * angle: in front of one of the 16 largest of those that can be. */
 bool sf_lights_near(const sf_scene *scene);
 
@@ -277,14 +277,14 @@ static inline bool sf_foggy(const sf_scene *scene) { return scene->fog.scatterin
 sf_status sf_fog_check(const sf_scene *scene, sf_error *error);
 void sf_fog_tabulate(const sf_scene *scene, sf_mesh_table *table);
 
-/* recentre.c: moves a scene that lies far from the origin there. */
+/* scene_recenter.c: moves a scene that lies far from the origin there. */
 sf_status sf_scene_recentre(sf_scene *scene, sf_error *error);
 /* Whether things of these bounds lie far from the origin, and what to subtract from them then. */
 bool sf_choose_shift(const sf_scene_info *info, float shift[3]);
 /* Subtracts it from the vertices, of which the mesh has a copy then. */
 sf_status sf_mesh_move(sf_scene_mesh *kept, const float shift[3], sf_scene_info *info, sf_error *error);
 
-/* instances.c, placing.c */
+/* instances.c, instance_transform.c */
 static inline bool sf_has_instances(const sf_scene *scene) { return scene->info.instance_count > 0; }
 void sf_instances_free(sf_scene *scene);
 /* Embree's instances of a recentred scene, and the table of their normals. */

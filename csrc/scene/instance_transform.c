@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/platform.h"
-#include "scene/scene_data.h"
+#include "scene/scene_internal.h"
 
 double sf_cofactors(const float m[9], double out[9]) {
     for (int r = 0; r < 3; ++r)

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "trace/round_kernels.h"
+#include "trace/quadric_kernels.h"
 
 #include <math.h>
 

@@ -4,8 +4,8 @@
 #ifndef SUNFLECK_COORDINATES_KERNELS_H
 #define SUNFLECK_COORDINATES_KERNELS_H
 
-#include "base/level.h"
-#include "trace/coordinates.h"
+#include "base/isa_dispatch.h"
+#include "trace/sample_dimensions.h"
 
 typedef struct sf_coordinates_kernels {
     /* Fills out[d][16 b + l] with coordinate d of the source for sample l of block b. */

@@ -4,8 +4,8 @@
 #ifndef SUNFLECK_COORDINATES_HALTON_KERNELS_H
 #define SUNFLECK_COORDINATES_HALTON_KERNELS_H
 
-#include "base/level.h"
-#include "trace/coordinates.h"
+#include "base/isa_dispatch.h"
+#include "trace/sample_dimensions.h"
 
 typedef struct sf_coordinates_halton_kernels {
     /* Fills out[d][16 b + l] with sf_halton_sample(base + l, first + d, key) of block b, bit for bit.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "base/pages.h"
+#include "base/page_cache.h"
 
 #include "base/platform.h"
 

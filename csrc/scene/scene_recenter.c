@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/error.h"
-#include "scene/scene_data.h"
+#include "scene/scene_internal.h"
 
 #define FAR 4 /* sizes of the scene from the origin, along an axis */
 
@@ -59,7 +59,7 @@ sf_status sf_scene_recentre(sf_scene *scene, sf_error *error) {
     if (!scene->moved_count && !sf_choose_shift(&scene->info, scene->shift)) return SF_STATUS_OK;
     for (size_t i = scene->moved_count; i < scene->info.mesh_count; ++i) {
         sf_scene_mesh *kept = scene->meshes + i;
-        if (kept->place.placed) { /* by a transform, which placing.c moves */
+        if (kept->place.placed) { /* by a transform, which instance_transform.c moves */
             scene->moved_count = i + 1;
             continue;
         }

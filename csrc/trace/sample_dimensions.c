@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "trace/coordinates.h"
+#include "trace/sample_dimensions.h"
 
 #include <assert.h>
 #include <stdbool.h>
