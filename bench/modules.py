@@ -23,7 +23,7 @@ from variants import build, run
 
 WORK = ROOT / "build/modules"
 MODULES = ("fog", "sky", "round", "material", "light_shape", "light_tree", "aov")
-TABLE = re.compile(r"^const (\w+) SF_AT_LEVEL\(\1\) = ", re.MULTILINE)
+TABLE = re.compile(r"^const (\w+) SF_AT_ISA\(\1\) = ", re.MULTILINE)
 TIMED = """
 import time
 scene, seconds = sf.scenes.penumbra(), []

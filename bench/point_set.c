@@ -33,12 +33,12 @@ static void report(const char *what, double *times, int count) {
 
 /* Fills of `count` points by one thread and by two, in turns; three of each count for nothing, so
  * that each core finds its part in its cache. */
-static void compare_threads(sf_crew *crew, sf_scramble scramble, size_t count) {
+static void compare_threads(sf_thread_team *team, sf_scramble scramble, size_t count) {
     static double times[2][RUNS];
     sf_points_options options = sf_points_options_default();
     options.dims = 16;
     options.scramble = scramble;
-    options.crew = crew;
+    options.team = team;
     float *out = NULL;
     if (posix_memalign((void **)&out, 64, count * 16 * sizeof *out)) exit(1);
     sf_point_set *sets[2];
@@ -84,12 +84,12 @@ int main(void) {
         report(worst ? "the point whose index needs most columns" : "a point of random index", times, RUNS);
     }
     sf_point_set_destroy(set);
-    sf_crew *crew = NULL;
-    if (sf_crew_create(&crew, NULL) != SF_STATUS_OK) return 1;
+    sf_thread_team *team = NULL;
+    if (sf_thread_team_create(&team, NULL) != SF_STATUS_OK) return 1;
     for (size_t count = 8192; count <= 131072; count *= 2) {
-        compare_threads(crew, SF_SCRAMBLE_NONE, count);
-        compare_threads(crew, SF_SCRAMBLE_OWEN, count);
+        compare_threads(team, SF_SCRAMBLE_NONE, count);
+        compare_threads(team, SF_SCRAMBLE_OWEN, count);
     }
-    sf_crew_destroy(crew);
+    sf_thread_team_destroy(team);
     return 0;
 }

@@ -21,16 +21,16 @@ static sf_status fail_io(const char *what, const char *path, sf_error *error) {
     return sf_fail(error, SF_STATUS_IO, "can't %s '%s': %s", what, path, sf_system_message(errno));
 }
 
-static void close_all(sf_replacement *r) {
+static void close_all(sf_atomic_file *r) {
     if (r->file >= 0) close(r->file);
     free(r->target);
     free(r->beside);
-    *r = (sf_replacement){.file = -1};
+    *r = (sf_atomic_file){.file = -1};
 }
 
 /* 1: the file beside is open and ours. 0: somebody renamed it between open and lock; try again.
  * -1: errno says why not. The lock ends with the process, however that ends. */
-static int open_and_lock(sf_replacement *r) {
+static int open_and_lock(sf_atomic_file *r) {
     struct stat opened, named;
     r->file = open(r->beside, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (r->file < 0) return -1;
@@ -46,8 +46,8 @@ static int open_and_lock(sf_replacement *r) {
     return 0;
 }
 
-sf_status sf_replacement_open(sf_replacement *r, const char *path, sf_error *error) {
-    *r = (sf_replacement){.file = -1};
+sf_status sf_atomic_file_open(sf_atomic_file *r, const char *path, sf_error *error) {
+    *r = (sf_atomic_file){.file = -1};
     r->target = realpath(path, NULL);
     if (!r->target) r->target = strdup(path); /* there is none yet */
     if (r->target) r->beside = malloc(strlen(r->target) + sizeof SUFFIX);
@@ -65,7 +65,7 @@ sf_status sf_replacement_open(sf_replacement *r, const char *path, sf_error *err
     return status;
 }
 
-sf_status sf_replacement_write(sf_replacement *r, const void *bytes, size_t count, sf_error *error) {
+sf_status sf_atomic_file_write(sf_atomic_file *r, const void *bytes, size_t count, sf_error *error) {
     const char *next = bytes;
     while (count > 0) {
         ssize_t written = write(r->file, next, count < WRITE_LIMIT ? count : WRITE_LIMIT);
@@ -93,10 +93,10 @@ static void sync_folder(char *path) {
     close(folder);
 }
 
-sf_status sf_replacement_commit(sf_replacement *r, sf_error *error) {
+sf_status sf_atomic_file_commit(sf_atomic_file *r, sf_error *error) {
     if (sync_file(r->file) != 0 || rename(r->beside, r->target) != 0) {
         sf_status status = fail_io("write", r->target, error);
-        sf_replacement_abandon(r);
+        sf_atomic_file_abandon(r);
         return status;
     }
     sync_folder(r->target);
@@ -104,7 +104,7 @@ sf_status sf_replacement_commit(sf_replacement *r, sf_error *error) {
     return SF_STATUS_OK;
 }
 
-void sf_replacement_abandon(sf_replacement *r) {
+void sf_atomic_file_abandon(sf_atomic_file *r) {
     if (r->beside && r->file >= 0) unlink(r->beside);
     close_all(r);
 }

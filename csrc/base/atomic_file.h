@@ -3,30 +3,30 @@
 
 /* A file written beside the one whose place it takes, so that whoever reads, and whatever stops the
  * writing, finds the old file or the new one, whole. POSIX. */
-#ifndef SUNFLECK_REPLACEMENT_H
-#define SUNFLECK_REPLACEMENT_H
+#ifndef SUNFLECK_ATOMIC_FILE_H
+#define SUNFLECK_ATOMIC_FILE_H
 
 #include "sunfleck/base.h"
 
-typedef struct sf_replacement {
+typedef struct sf_atomic_file {
     char *target; /* symbolic links followed: a rename would replace the link */
     char *beside; /* target with ".part" behind it: what a kill leaves, the next writing overwrites */
     int file;
-} sf_replacement;
+} sf_atomic_file;
 
 /* Opens the file beside, empty, for this process alone: another that is writing the same one is an
  * error. Every failure is SF_STATUS_IO with the system's reason, or SF_STATUS_OUT_OF_MEMORY; the
  * replacement is then closed and nothing is left behind. */
-sf_status sf_replacement_open(sf_replacement *replacement, const char *path, sf_error *error);
+sf_status sf_atomic_file_open(sf_atomic_file *replacement, const char *path, sf_error *error);
 
-/* Appends. After a failure call sf_replacement_abandon. */
-sf_status sf_replacement_write(sf_replacement *replacement, const void *bytes, size_t count, sf_error *error);
+/* Appends. After a failure call sf_atomic_file_abandon. */
+sf_status sf_atomic_file_write(sf_atomic_file *replacement, const void *bytes, size_t count, sf_error *error);
 
 /* Brings the bytes to the disk, renames, and brings the folder's entry to the disk, in this order;
  * closes. A failure leaves the old file. */
-sf_status sf_replacement_commit(sf_replacement *replacement, sf_error *error);
+sf_status sf_atomic_file_commit(sf_atomic_file *replacement, sf_error *error);
 
 /* Removes what was written, and closes. */
-void sf_replacement_abandon(sf_replacement *replacement);
+void sf_atomic_file_abandon(sf_atomic_file *replacement);
 
 #endif

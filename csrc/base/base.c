@@ -38,7 +38,7 @@ const char *sf_isa_name(sf_isa isa) {
 
 /* The features of the x86-64-v4 and -v3 levels (System V ABI), which the kernels are built for. */
 static sf_isa processor_isa(void) {
-#ifdef SF_HAVE_LEVELS
+#ifdef SF_HAVE_ISAS
     int v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
              __builtin_cpu_supports("bmi2");
     int v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&

@@ -8,9 +8,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/platform.h"
-#include "base/atomic_file.h"
 
 #define MAGIC_BYTES "\x89SFCK\r\n\x1a" /* as PNG's: a transfer as text changes it */
 #define MAGIC_SIZE 8
@@ -67,7 +67,7 @@ static uint64_t checksum(uint64_t hash, const unsigned char *bytes, size_t count
 /* ---- writing ---- */
 
 typedef struct writer {
-    sf_replacement file;
+    sf_atomic_file file;
     uint64_t hash;
     size_t used;
     unsigned char *buffer;
@@ -77,7 +77,7 @@ typedef struct writer {
 
 static void flush(writer *w) {
     w->hash = checksum(w->hash, w->buffer, w->used);
-    if (!w->status) w->status = sf_replacement_write(&w->file, w->buffer, w->used, w->error);
+    if (!w->status) w->status = sf_atomic_file_write(&w->file, w->buffer, w->used, w->error);
     w->used = 0;
 }
 
@@ -135,7 +135,7 @@ static void put_array(writer *w, const sf_array *array) {
 sf_status sf_container_write(const char *path, const sf_array *arrays, size_t count, sf_error *error) {
     writer w = {.error = error, .buffer = malloc(BUFFER_SIZE)};
     if (!w.buffer) return sf_fail_memory(error, "a file's buffer", BUFFER_SIZE);
-    w.status = sf_replacement_open(&w.file, path, error);
+    w.status = sf_atomic_file_open(&w.file, path, error);
     if (!w.status) {
         put_entries(&w, arrays, count);
         for (size_t i = 0; i < count; ++i) put_array(&w, arrays + i);
@@ -143,9 +143,9 @@ sf_status sf_container_write(const char *path, const sf_array *arrays, size_t co
         put64(&w, w.hash);
         flush(&w);
         if (w.status)
-            sf_replacement_abandon(&w.file);
+            sf_atomic_file_abandon(&w.file);
         else
-            w.status = sf_replacement_commit(&w.file, error);
+            w.status = sf_atomic_file_commit(&w.file, error);
     }
     free(w.buffer);
     return w.status;

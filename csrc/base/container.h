@@ -40,7 +40,7 @@ typedef struct sf_array {
     size_t stride;
 } sf_array;
 
-/* Writes the arrays beside `path`, then renames: see sf_replacement. SF_STATUS_IO where that fails;
+/* Writes the arrays beside `path`, then renames: see sf_atomic_file. SF_STATUS_IO where that fails;
  * whatever was at `path` is then still there. Takes one pass over the arrays and 64 KiB. */
 sf_status sf_container_write(const char *path, const sf_array *arrays, size_t count, sf_error *error);
 

@@ -11,7 +11,7 @@ static struct {
     size_t size; /* in whole pages */
 } kept = {.mutex = PTHREAD_MUTEX_INITIALIZER};
 
-void *sf_pages_take(size_t bytes) {
+void *sf_page_cache_take(size_t bytes) {
     void *memory = NULL;
     pthread_mutex_lock(&kept.mutex);
     if (kept.memory && kept.size == sf_pages_size(bytes)) {
@@ -24,9 +24,9 @@ void *sf_pages_take(size_t bytes) {
     return memory;
 }
 
-void sf_pages_give(void *memory, size_t bytes) {
+void sf_page_cache_give(void *memory, size_t bytes) {
     size_t size = sf_pages_size(bytes);
-    if (memory && size <= SF_PAGES_KEPT) {
+    if (memory && size <= SF_PAGE_CACHE_KEPT) {
         pthread_mutex_lock(&kept.mutex);
         void *before = kept.memory;
         size_t size_before = kept.size;

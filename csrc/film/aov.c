@@ -146,7 +146,7 @@ static void resolve_pixel(const sf_film *film, const sf_film_pixel *pixel, size_
 
 void sf_aov_resolve_row(sf_film *film, uint32_t y) {
     for (uint32_t x = 0; x < film->crop_width; ++x)
-        resolve_pixel(film, sf_film_counts(film, x, y) ? sf_film_crop_at(film, x, y) : NULL,
+        resolve_pixel(film, sf_film_is_wanted(film, x, y) ? sf_film_crop_at(film, x, y) : NULL,
                       (size_t)y * film->crop_width + x);
 }
 

@@ -68,7 +68,7 @@ static sf_status allocate_arrays(sf_film *film, bool masked, sf_error *error) {
     size_t parts = film->negative_part > 0 ? traced * sizeof *film->signed_pixels : 0;
     film->memory_bytes =
         traced * sizeof *film->pixels + pools + rows + parts + pixels * (6 * 4 + 1 + masked) + 10 * SF_ALIGNMENT;
-    film->memory = sf_pages_take(film->memory_bytes);
+    film->memory = sf_page_cache_take(film->memory_bytes);
     if (!film->memory) return sf_fail_memory(error, "the film", film->memory_bytes);
     char *memory = film->memory;
     film->pixels = take(&memory, traced * sizeof *film->pixels);
@@ -135,7 +135,7 @@ void sf_film_mark_pilot(sf_film *film) {
 void sf_film_destroy(sf_film *film) {
     if (!film) return;
     sf_aov_destroy(film->aovs);
-    sf_pages_give(film->memory, film->memory_bytes);
+    sf_page_cache_give(film->memory, film->memory_bytes);
     for (size_t i = 0; i < film->attribute_count; ++i) free((char *)film->attributes[i].text);
     free(film->attributes);
     free(film->parts);
@@ -169,7 +169,7 @@ float sf_film_half_width(const sf_film_pixel *pixel, double z) {
 void sf_film_sum_row(sf_film *film, uint32_t y) {
     double sum = 0;
     for (uint32_t x = 0; x < film->crop_width; ++x) {
-        if (!sf_film_counts(film, x, y)) continue;
+        if (!sf_film_is_wanted(film, x, y)) continue;
         sum += sf_film_level_of(&sf_film_crop_at(film, x, y)->moments);
     }
     film->rows[y].level = sum;
@@ -212,7 +212,7 @@ void sf_film_resolve_row(sf_film *film, uint32_t y) {
     for (uint32_t x = 0; x < film->crop_width; ++x) {
         const sf_film_pixel *pixel = sf_film_crop_at(film, x, y);
         size_t i = (size_t)y * film->crop_width + x;
-        if (!sf_film_counts(film, x, y)) {
+        if (!sf_film_is_wanted(film, x, y)) {
             leave_out(film, i);
             continue;
         }

@@ -144,7 +144,7 @@ void sf_film_mark_pilot(sf_film *film);
 sf_status sf_film_create(const sf_render_options *options, bool masked, sf_film **film, sf_error *error);
 
 /* Whether pixel (x, y) of the crop counts: the mask does not leave it out. */
-static inline int sf_film_counts(const sf_film *film, uint32_t x, uint32_t y) {
+static inline int sf_film_is_wanted(const sf_film *film, uint32_t x, uint32_t y) {
     return !film->mask || film->mask[(size_t)y * film->crop_width + x];
 }
 

@@ -62,7 +62,7 @@ void sf_mask_apply(const sf_render_options *o, sf_film *film) {
 void sf_mask_count(sf_film *film) {
     film->counted = 0;
     for (uint32_t y = 0; y < film->crop_height; ++y)
-        for (uint32_t x = 0; x < film->crop_width; ++x) film->counted += (uint64_t)sf_film_counts(film, x, y);
+        for (uint32_t x = 0; x < film->crop_width; ++x) film->counted += (uint64_t)sf_film_is_wanted(film, x, y);
 }
 
 void sf_mask_describe(const sf_film *film, char text[SF_MASK_TEXT_SIZE]) {

@@ -65,4 +65,4 @@ static inline double one_f64(const double *x) {
 #define FN(name) name##_f64
 #include "mapping/mapping_blocks.h"
 
-const sf_mapping_kernels SF_AT_LEVEL(sf_mapping_kernels) = {run_f32, run_f64, outside_f32, outside_f64};
+const sf_mapping_kernels SF_AT_ISA(sf_mapping_kernels) = {run_f32, run_f64, outside_f32, outside_f64};

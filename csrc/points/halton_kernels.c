@@ -120,4 +120,4 @@ static void weave(size_t rows, const uint32_t *columns, uint32_t width, uint32_t
         for (size_t i = 0; i < rows; ++i) out[i * dims + k] = columns[k * SF_HALTON_COLUMN + i];
 }
 
-const sf_halton_kernels SF_AT_LEVEL(sf_halton_kernels) = {words, pairs, owen, weave};
+const sf_halton_kernels SF_AT_ISA(sf_halton_kernels) = {words, pairs, owen, weave};

@@ -208,4 +208,4 @@ static void look_up(size_t count, const uint32_t *SF_RESTRICT indices, const uin
     sf_reverse_bits_each(out, count);
 }
 
-const sf_net_kernels SF_AT_LEVEL(sf_net_kernels) = {start, rows, owen_low, nested, shuffle, look_up};
+const sf_net_kernels SF_AT_ISA(sf_net_kernels) = {start, rows, owen_low, nested, shuffle, look_up};

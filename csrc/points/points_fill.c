@@ -3,9 +3,10 @@
 
 /* Filling arrays with points, by chunks on threads. */
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/platform.h"
-#include "points/thread_team.h"
 #include "points/points_set.h"
+#include "points/thread_team.h"
 #include "sunfleck/points.h"
 
 /* A thread's share of a fill: its points, and memory of its own. */
@@ -18,8 +19,6 @@ typedef struct fill_job {
     int streams; /* write past the caches */
     char *out;
     uint32_t *scratch;
-    pthread_t thread;
-    int started;
 } fill_job;
 
 static size_t size_of(sf_number_type type) { return type == SF_NUMBER_F64 ? sizeof(double) : sizeof(float); }
@@ -50,8 +49,8 @@ static void make_numbers(sf_points_cursor *cursor, uint64_t first, size_t rows, 
     if (type == SF_NUMBER_F64) cursor->kernels->f64(count, high, low, out);
 }
 
-static void *fill_share(void *argument) {
-    fill_job *job = argument;
+static void fill_share(void *user, unsigned share) {
+    const fill_job *job = (const fill_job *)user + share;
     const sf_points_options *o = &job->set->options;
     size_t step = chunk_rows(o), row_bytes = o->dims * size_of(job->type);
     uint32_t *words = job->scratch + state_words(o), *numbers = words + 2 * chunk_words(o);
@@ -60,7 +59,7 @@ static void *fill_share(void *argument) {
     if (job->set->net && !job->set->net->nested) {
         sf_net_rows(&cursor, job->first, job->rows, job->type, job->streams, job->out);
         if (job->streams) sf_stream_end();
-        return NULL;
+        return;
     }
     /* The first chunk ends where an aligned block does. */
     size_t rows = step - (size_t)(job->first % step);
@@ -71,14 +70,13 @@ static void *fill_share(void *argument) {
         if (job->streams) sf_stream_copy(out, numbers, rows * row_bytes);
     }
     if (job->streams) sf_stream_end();
-    return NULL;
 }
 
-/* Threads pay from some 2^16 words each, as starting one takes as long as making them; a crew's,
+/* Threads pay from some 2^16 words each, as starting one takes as long as making them; a team's,
  * which need not be started, from 2^15. */
 static unsigned useful_threads(const sf_points_options *options, size_t count) {
-    enum { MAX_THREADS = SF_CREW_MAX + 1 };
-    size_t least_words = (size_t)1 << (options->crew ? 15 : 16);
+    enum { MAX_THREADS = SF_THREAD_TEAM_MAX + 1 };
+    size_t least_words = (size_t)1 << (options->team ? 15 : 16);
     unsigned threads = options->threads ? options->threads : sf_processor_count();
     size_t most = count / (least_words / options->dims + 1);
     if (threads > MAX_THREADS) threads = MAX_THREADS;
@@ -104,21 +102,18 @@ static void share_out(fill_job *jobs, unsigned threads, const sf_point_set *set,
                              .scratch = jobs[0].scratch + i * scratch_words(&set->options)};
 }
 
-static void fill_numbered(void *user, unsigned share) { fill_share((fill_job *)user + share); }
+static void fill_item(void *user, unsigned worker, size_t share) {
+    (void)worker;
+    fill_share(user, (unsigned)share);
+}
 
 /* What even the quickest pattern takes some 50 us for. */
 #define LONG_WORDS ((size_t)1 << 19)
 
 static void work_shares(fill_job *jobs, unsigned threads, const sf_points_options *options) {
     int is_long = jobs[0].rows >= LONG_WORDS / threads / options->dims;
-    if (threads > 1 && options->crew && sf_crew_run(options->crew, threads, is_long, fill_numbered, jobs)) return;
-    /* The last share is the caller's, and those whose thread could not be had. */
-    for (unsigned i = 0; i + 1 < threads; ++i)
-        jobs[i].started = pthread_create(&jobs[i].thread, NULL, fill_share, jobs + i) == 0;
-    for (unsigned i = threads; i-- > 0;)
-        if (!jobs[i].started) fill_share(jobs + i);
-    for (unsigned i = 0; i + 1 < threads; ++i)
-        if (jobs[i].started) pthread_join(jobs[i].thread, NULL);
+    if (threads > 1 && options->team && sf_thread_team_run(options->team, threads, is_long, fill_share, jobs)) return;
+    sf_parallel_for(threads, threads, fill_item, jobs);
 }
 
 static sf_status fill(const sf_point_set *set, uint64_t first, size_t count, sf_number_type type, void *out,

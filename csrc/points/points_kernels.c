@@ -55,4 +55,4 @@ static void place(size_t rows, uint32_t dims, const uint32_t *sides, const uint3
         }
 }
 
-const sf_points_kernels SF_AT_LEVEL(sf_points_kernels) = {f32, f64, row_keys, random_words, place};
+const sf_points_kernels SF_AT_ISA(sf_points_kernels) = {f32, f64, row_keys, random_words, place};

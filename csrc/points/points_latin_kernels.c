@@ -149,4 +149,4 @@ static void fill(const sf_latin_tables *t, uint32_t first, size_t words, uint32_
     }
 }
 
-const sf_latin_kernels SF_AT_LEVEL(sf_latin_kernels) = {fill};
+const sf_latin_kernels SF_AT_ISA(sf_latin_kernels) = {fill};

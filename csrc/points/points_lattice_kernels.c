@@ -52,4 +52,4 @@ static void fill(const uint64_t *factors, size_t rows, const uint64_t *begins, c
     }
 }
 
-const sf_lattice_kernels SF_AT_LEVEL(sf_lattice_kernels) = {fill};
+const sf_lattice_kernels SF_AT_ISA(sf_lattice_kernels) = {fill};

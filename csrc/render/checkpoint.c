@@ -13,9 +13,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/atomic_file.h"
 #include "base/container.h"
 #include "base/error.h"
-#include "base/atomic_file.h"
 #include "film/mask.h"
 #include "film/render_options.h"
 #include "film/stopping.h"
@@ -97,9 +97,9 @@ static sf_status take_progress(const sf_container *file, sf_checkpoint *c, sf_er
 
 /* Whether a file can be written there, before there is anything to write. */
 static sf_status check_writable(const char *path, sf_error *error) {
-    sf_replacement trial;
-    sf_status status = sf_replacement_open(&trial, path, error);
-    if (!status) sf_replacement_abandon(&trial);
+    sf_atomic_file trial;
+    sf_status status = sf_atomic_file_open(&trial, path, error);
+    if (!status) sf_atomic_file_abandon(&trial);
     return status;
 }
 

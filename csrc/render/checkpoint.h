@@ -25,10 +25,10 @@ typedef struct sf_round_state {
 } sf_round_state;
 
 typedef struct sf_checkpoint {
-    sf_film *film;       /* its accumulators, and the options and scene that it is of */
-    uint64_t *open;      /* by cell: pixels that are not done */
-    uint64_t *active;    /* of these, the lap's */
-    sf_goal_note *notes; /* by pixel; NULL without a goal of the whole picture */
+    sf_film *film;                /* its accumulators, and the options and scene that it is of */
+    uint64_t *open;               /* by cell: pixels that are not done */
+    uint64_t *active;             /* of these, the lap's */
+    sf_relmse_target_note *notes; /* by pixel; NULL without a goal of the whole picture */
     sf_round_state state;
 } sf_checkpoint;
 

@@ -69,7 +69,8 @@ typedef struct field {
 #define STATE(name, type, range) {"state." #name, OF_STATE, offsetof(sf_round_state, name), SF_ARRAY_##type, 1, range}
 #define PIXEL(name, member, type, width, range) \
     {"pixel." name, OF_PIXELS, offsetof(sf_film_pixel, member), SF_ARRAY_##type, width, range}
-#define GOAL(name, type, range) {"goal." #name, OF_NOTES, offsetof(sf_goal_note, name), SF_ARRAY_##type, 1, range}
+#define GOAL(name, type, range) \
+    {"goal." #name, OF_NOTES, offsetof(sf_relmse_target_note, name), SF_ARRAY_##type, 1, range}
 #define SIGNED(member, type, width, range) \
     {"signed." #member, OF_SIGNED, offsetof(sf_signed_pixel, member), SF_ARRAY_##type, width, range}
 

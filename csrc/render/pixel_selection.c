@@ -64,7 +64,7 @@ static uint32_t survey(sf_rounds *r, double *worst) {
         r->workers[i].least = UINT32_MAX;
         r->workers[i].worst = 0;
     }
-    sf_pool_run(r->pool, all_tiles(r), survey_tile, sf_rounds_wake, r);
+    sf_thread_pool_run(r->pool, all_tiles(r), survey_tile, sf_rounds_wake, r);
     for (uint32_t i = 0; i < r->options.threads; ++i) {
         least = r->workers[i].least < least ? r->workers[i].least : least;
         *worst = fmax(*worst, r->workers[i].worst);
@@ -77,7 +77,7 @@ static uint64_t choose_beyond(sf_rounds *r, double target) {
     r->target = target;
     memset(r->active, 0, sf_film_cell_count(r->film) * sizeof *r->active);
     for (uint32_t i = 0; i < r->options.threads; ++i) r->workers[i].chosen = 0;
-    sf_pool_run(r->pool, all_tiles(r), choose_tile, sf_rounds_wake, r);
+    sf_thread_pool_run(r->pool, all_tiles(r), choose_tile, sf_rounds_wake, r);
     for (uint32_t i = 0; i < r->options.threads; ++i) count += r->workers[i].chosen;
     return count;
 }
@@ -133,7 +133,7 @@ static uint32_t least_planned(const sf_rounds *r) {
 bool sf_rounds_begin_lap(sf_rounds *r) {
     bool chosen = !sf_moves_together(&r->options);
     if (chosen && !r->second) {
-        bool any = r->goal ? sf_goal_choose(r) : choose_by_budget(r);
+        bool any = r->goal ? sf_relmse_target_choose(r) : choose_by_budget(r);
         if (!any) r->from = r->to; /* no lap has begun */
         if (!any) return false;
     } else {

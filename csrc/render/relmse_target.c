@@ -25,51 +25,51 @@ typedef struct census {
     uint32_t least[GAINS]; /* samples that an open pixel of the bin has */
 } census;
 
-struct sf_goal {
-    sf_goal_note *notes; /* as the film's pixels */
-    census *censuses;    /* by worker; the first becomes that of all */
-    uint32_t threshold;  /* the bin of gains from which on pixels are brought on */
+struct sf_relmse_target {
+    sf_relmse_target_note *notes; /* as the film's pixels */
+    census *censuses;             /* by worker; the first becomes that of all */
+    uint32_t threshold;           /* the bin of gains from which on pixels are brought on */
     bool reached;
 };
 
 static size_t pixel_count(const sf_rounds *r) { return r->film->stored; }
 
-sf_status sf_goal_prepare(sf_rounds *r, sf_error *error) {
+sf_status sf_relmse_target_prepare(sf_rounds *r, sf_error *error) {
     if (!(r->options.relmse > 0)) return SF_STATUS_OK;
     r->goal = calloc(1, sizeof *r->goal);
     if (!r->goal) return sf_fail_memory(error, "a goal", sizeof *r->goal);
     size_t bytes = pixel_count(r) * sizeof *r->goal->notes;
     r->goal->notes = malloc(bytes);
     if (!r->goal->notes) return sf_fail_memory(error, "the pixels' errors", bytes);
-    for (size_t i = 0; i < pixel_count(r); ++i) r->goal->notes[i] = (sf_goal_note){INFINITY, INFINITY, 0};
+    for (size_t i = 0; i < pixel_count(r); ++i) r->goal->notes[i] = (sf_relmse_target_note){INFINITY, INFINITY, 0};
     bytes = r->options.threads * sizeof *r->goal->censuses;
     r->goal->censuses = malloc(bytes);
     return r->goal->censuses ? SF_STATUS_OK : sf_fail_memory(error, "the threads' sums of errors", bytes);
 }
 
-void sf_goal_destroy(sf_goal *goal) {
+void sf_relmse_target_destroy(sf_relmse_target *goal) {
     if (!goal) return;
     free(goal->notes);
     free(goal->censuses);
     free(goal);
 }
 
-void sf_goal_take_note(sf_rounds *r, uint32_t x, uint32_t y) {
+void sf_relmse_target_take_note(sf_rounds *r, uint32_t x, uint32_t y) {
     size_t i = sf_film_index(r->film, x, y);
     const sf_film_pixel *pixel = r->film->pixels + i;
-    r->goal->notes[i] = (sf_goal_note){.error = (float)sf_stop_relative_error(r->film, pixel),
-                                       .around = sf_stop_relative_error_around(r->film, x, y),
-                                       .taken = (uint32_t)sf_film_taken(pixel)};
+    r->goal->notes[i] = (sf_relmse_target_note){.error = (float)sf_stop_relative_error(r->film, pixel),
+                                                .around = sf_stop_relative_error_around(r->film, x, y),
+                                                .taken = (uint32_t)sf_film_taken(pixel)};
 }
 
-sf_goal_note *sf_goal_notes(sf_goal *goal) { return goal ? goal->notes : NULL; }
+sf_relmse_target_note *sf_relmse_target_notes(sf_relmse_target *goal) { return goal ? goal->notes : NULL; }
 
-bool sf_goal_is_reached(const sf_goal *goal) { return goal->reached; }
+bool sf_relmse_target_is_reached(const sf_relmse_target *goal) { return goal->reached; }
 
 /* ---- gains ---- */
 
 /* The bin of what a sample more gains: e (1 - 1/d) / n; what is no number counts as infinite. */
-static uint32_t gain_bin(const sf_goal_note *pixel, float fall) {
+static uint32_t gain_bin(const sf_relmse_target_note *pixel, float fall) {
     float gain = pixel->around * (1 - 1 / fall) / (float)(pixel->taken ? pixel->taken : 1);
     uint32_t bits;
     gain = gain > 0 ? gain : gain == 0 ? 0 : INFINITY; /* -0.0 has the bits of a bin beyond the last */
@@ -105,9 +105,9 @@ static void count_cell(const sf_rounds *r, census *c, uint32_t cell) {
     for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m) {
         uint32_t x = sf_rounds_x(r, cell, m), y = sf_rounds_y(r, cell, m);
         if (x >= r->film->width || y >= r->film->height) continue;
-        const sf_goal_note *pixel = r->goal->notes + sf_film_index(r->film, x, y);
+        const sf_relmse_target_note *pixel = r->goal->notes + sf_film_index(r->film, x, y);
         double part = (double)pixel->error / r->options.relmse * ONE;
-        uint64_t error = sf_rounds_counts(r, x, y) ? (uint64_t)(part < MOST ? part : MOST) : 0;
+        uint64_t error = sf_rounds_in_picture(r, x, y) ? (uint64_t)(part < MOST ? part : MOST) : 0;
         add_error(&c->whole, error);
         if (!(r->open[cell] >> m & 1u)) continue;
         uint32_t bin = gain_bin(pixel, fall);
@@ -139,7 +139,7 @@ static const census *take_census(sf_rounds *r) {
         memset(censuses + i, 0, sizeof *censuses);
         memset(censuses[i].least, 0xff, sizeof censuses[i].least);
     }
-    sf_pool_run(r->pool, r->film->cell_rows, count_row, sf_rounds_wake, r);
+    sf_thread_pool_run(r->pool, r->film->cell_rows, count_row, sf_rounds_wake, r);
     for (uint32_t i = 1; i < r->options.threads; ++i) add_census(censuses, censuses + i);
     return censuses;
 }
@@ -188,14 +188,14 @@ static void choose_row(void *user, unsigned worker, size_t row) {
         for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m) {
             if (!(r->open[cell] >> m & 1u)) continue;
             uint32_t u = sf_rounds_x(r, cell, m), v = sf_rounds_y(r, cell, m);
-            const sf_goal_note *pixel = r->goal->notes + sf_film_index(r->film, u, v);
+            const sf_relmse_target_note *pixel = r->goal->notes + sf_film_index(r->film, u, v);
             if (pixel->taken == r->from && gain_bin(pixel, fall) >= r->goal->threshold)
                 r->active[cell] |= UINT64_C(1) << m;
         }
     }
 }
 
-bool sf_goal_choose(sf_rounds *r) {
+bool sf_relmse_target_choose(sf_rounds *r) {
     const census *c = take_census(r);
     double goal = (double)r->film->counted * ONE;
     r->progress.relmse = (double)c->whole / goal * r->options.relmse;
@@ -212,6 +212,6 @@ bool sf_goal_choose(sf_rounds *r) {
     if (!beyond) return false;
     r->from = least;
     r->look = sf_stop_next_look(&r->options, least);
-    sf_pool_run(r->pool, r->film->cell_rows, choose_row, sf_rounds_wake, r);
+    sf_thread_pool_run(r->pool, r->film->cell_rows, choose_row, sf_rounds_wake, r);
     return true;
 }

@@ -12,37 +12,37 @@
  * goal, and is set anew before every lap. No pixel is closed before the whole picture is.
  *
  * Sums are of integers, so that they do not depend on threads. */
-#ifndef SUNFLECK_GOAL_H
-#define SUNFLECK_GOAL_H
+#ifndef SUNFLECK_RELMSE_TARGET_H
+#define SUNFLECK_RELMSE_TARGET_H
 
 #include "film/film_internal.h"
 
 struct sf_rounds;
-typedef struct sf_goal sf_goal;
+typedef struct sf_relmse_target sf_relmse_target;
 
 /* What a pixel had come to when it was looked at last. */
-typedef struct sf_goal_note {
+typedef struct sf_relmse_target_note {
     float error;  /* its part in relMSE */
     float around; /* the mean of those around, which its gain is told from */
     uint32_t taken;
-} sf_goal_note;
+} sf_relmse_target_note;
 
 /* Sets r->goal, where the options have one. */
-sf_status sf_goal_prepare(struct sf_rounds *r, sf_error *error);
-void sf_goal_destroy(sf_goal *goal);
+sf_status sf_relmse_target_prepare(struct sf_rounds *r, sf_error *error);
+void sf_relmse_target_destroy(sf_relmse_target *goal);
 
 /* Notes what pixel (x, y) of the film has come to. */
-void sf_goal_take_note(struct sf_rounds *r, uint32_t x, uint32_t y);
+void sf_relmse_target_take_note(struct sf_rounds *r, uint32_t x, uint32_t y);
 
 /* The notes, by pixel of the film; NULL where there is no goal. */
-sf_goal_note *sf_goal_notes(sf_goal *goal);
+sf_relmse_target_note *sf_relmse_target_notes(sf_relmse_target *goal);
 
 /* Chooses the pixels of the next lap, and where it begins and looks: r->active,
  * r->from, r->look. False: the goal is
  * reached, or no pixel may have more samples. */
-bool sf_goal_choose(struct sf_rounds *r);
+bool sf_relmse_target_choose(struct sf_rounds *r);
 
 /* Whether it is reached, as of the last call of the above. */
-bool sf_goal_is_reached(const sf_goal *goal);
+bool sf_relmse_target_is_reached(const sf_relmse_target *goal);
 
 #endif

@@ -71,20 +71,21 @@ static sf_status hire_workers(sf_rounds *r, sf_error *error) {
         if (r->context.aovs & SF_AOVS_OF_HITS)
             r->workers[i].batch.hit_sums = r->film->aovs->hits + (size_t)i * SF_BLOCKS;
     }
-    return sf_pool_create(r->options.threads, &r->pool, error);
+    return sf_thread_pool_create(r->options.threads, &r->pool, error);
 }
 
 static sf_status prepare(sf_rounds *r, sf_error *error) {
     const sf_scene *scene = r->context.scene;
     const sf_render_options *o = &r->options;
-    sf_status status = sf_coordinates_init(&r->context.coordinates, o->pattern, &scene->plan, o->spp, o->seed, error);
+    sf_status status =
+        sf_sample_dimensions_init(&r->context.coordinates, o->pattern, &scene->plan, o->spp, o->seed, error);
     if (!status) status = sf_film_create(o, o->mask != NULL, &r->film, error);
     r->context.aovs = o->aovs;
     if (!status) status = lay_out_cells(r, error);
     if (!status) status = hire_workers(r, error);
-    if (!status) status = sf_goal_prepare(r, error);
+    if (!status) status = sf_relmse_target_prepare(r, error);
     if (status) return status;
-    r->region = sf_rounds_count(r, r->open);
+    r->region = sf_rounds_count_pixels(r, r->open);
     if (o->samples && sf_rounds_budget(r) < r->region)
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
                        "samples is %" PRIu64 "; at least %s for each of %" PRIu64 " pixels is allowed", o->samples,
@@ -149,7 +150,7 @@ static void adopt_checkpoint(sf_rounds *r, const sf_round_state *state, bool ext
     r->lap = r->second ? (sf_lap){0, 0} : sf_stop_lap(&r->options, r->look);
     sf_rounds_list_tiles(r);
     r->progress.round = summary->rounds;
-    r->workers[0].done = (r->region - sf_rounds_count(r, r->open)) * r->progress.pixels / r->region;
+    r->workers[0].done = (r->region - sf_rounds_count_pixels(r, r->open)) * r->progress.pixels / r->region;
 }
 
 static sf_status resume(sf_rounds *r, sf_error *error) {
@@ -173,7 +174,7 @@ static void finish(sf_rounds *r) {
         for (int work = 0; work < SF_WORK_COUNT; ++work)
             summary->work_seconds[work] += r->workers[i].batch.clock.seconds[work];
     if (!r->level_fixed) sf_rounds_measure_level(r);
-    sf_pool_run(r->pool, r->film->crop_height, resolve_row, sf_rounds_wake, r);
+    sf_thread_pool_run(r->pool, r->film->crop_height, resolve_row, sf_rounds_wake, r);
     sf_film_summarize_rows(r->film);
     summary->seconds = sf_seconds_now() - r->start;
 }
@@ -196,9 +197,9 @@ sf_status sf_render(const sf_scene *scene, const sf_render_options *options, sf_
         finish(r);
         status = sf_film_describe(r->film, error);
     }
-    sf_pool_destroy(r->pool);
+    sf_thread_pool_destroy(r->pool);
     sf_aligned_free(r->workers);
-    sf_goal_destroy(r->goal);
+    sf_relmse_target_destroy(r->goal);
     free(r->open);
     free(r->active);
     free(r->tiles);

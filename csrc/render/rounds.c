@@ -44,7 +44,8 @@ static void report_round(sf_rounds *r) {
 /* ---- checkpoints ---- */
 
 sf_checkpoint sf_rounds_checkpoint(sf_rounds *r) {
-    return (sf_checkpoint){.film = r->film, .open = r->open, .active = r->active, .notes = sf_goal_notes(r->goal)};
+    return (sf_checkpoint){
+        .film = r->film, .open = r->open, .active = r->active, .notes = sf_relmse_target_notes(r->goal)};
 }
 
 /* Writes the state; a failure is a notice, and the next write is tried in its time. */
@@ -84,7 +85,7 @@ static void wake_sampling(void *user) {
  * anything is decided on it; so does a checkpoint that is due, after which the round goes on. */
 static void sample_round(sf_rounds *r) {
     for (;;) {
-        sf_pool_run(r->pool, r->tile_count, sf_rounds_sample_tile, wake_sampling, r);
+        sf_thread_pool_run(r->pool, r->tile_count, sf_rounds_sample_tile, wake_sampling, r);
         r->sampled = sf_atomic_load(&r->state);
         if (r->sampled == SF_RUNNING) return;
         r->ahead = r->to > r->ahead ? r->to : r->ahead;
@@ -146,8 +147,8 @@ static bool decide_pixel(sf_rounds *r, uint32_t x, uint32_t y, size_t state) {
     bool met = !o->spp && summary->tolerance >= 0 && sf_film_taken(pixel) >= o->min_spp &&
                (double)pixel->half_width <= summary->tolerance;
     if (r->goal) { /* no pixel is met before the whole picture is */
-        sf_goal_take_note(r, x, y);
-        met = state == SF_SPENT && sf_goal_is_reached(r->goal);
+        sf_relmse_target_take_note(r, x, y);
+        met = state == SF_SPENT && sf_relmse_target_is_reached(r->goal);
     }
     if (!met && !full && state == SF_RUNNING) return false;
     sf_stop_reason reason = met ? SF_STOP_MET : unmet_reason(r, full, state);
@@ -164,7 +165,7 @@ static void decide_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
             uint64_t bit = UINT64_C(1) << sf_cell_number(x, y);
             if (!(r->active[cell] & bit) || !decide_pixel(r, x, y, r->sampled)) continue;
             r->open[cell] &= ~bit;
-            if (!sf_rounds_counts(r, x, y)) continue;
+            if (!sf_rounds_in_picture(r, x, y)) continue;
             ++worker->done;
             worker->met += sf_film_at(r->film, x, y)->reason == SF_STOP_MET;
         }
@@ -181,7 +182,7 @@ static void sum_row(void *user, unsigned worker, size_t item) {
 }
 
 void sf_rounds_measure_level(sf_rounds *r) {
-    sf_pool_run(r->pool, r->film->crop_height, sum_row, sf_rounds_wake, r);
+    sf_thread_pool_run(r->pool, r->film->crop_height, sum_row, sf_rounds_wake, r);
     r->film->summary.level = sf_film_level(r->film);
 }
 
@@ -205,10 +206,10 @@ static void fix_tolerance(sf_rounds *r) {
 static void decide(sf_rounds *r) {
     fix_tolerance(r);
     if (r->lap.levels && r->to == r->look && sf_stop_is_look(&r->options, r->look))
-        sf_pool_run(r->pool, sf_stop_pool_count(r->film), look_at_pool, sf_rounds_wake, r);
+        sf_thread_pool_run(r->pool, sf_stop_pool_count(r->film), look_at_pool, sf_rounds_wake, r);
     if (r->options.spp && r->to < sf_rounds_most(r))
         return; /* of a fixed count there is nothing to tell before its end */
-    sf_pool_run(r->pool, r->tile_count, decide_tile, sf_rounds_wake, r);
+    sf_thread_pool_run(r->pool, r->tile_count, decide_tile, sf_rounds_wake, r);
 }
 
 /* ---- rounds ---- */
@@ -229,7 +230,7 @@ static void close_all(sf_rounds *r) {
     if (!spent) r->film->untouched = (uint8_t)unmet_reason(r, false, r->sampled);
     memcpy(r->active, r->open, sf_film_cell_count(r->film) * sizeof *r->active);
     sf_rounds_list_tiles(r);
-    sf_pool_run(r->pool, r->tile_count, decide_tile, sf_rounds_wake, r);
+    sf_thread_pool_run(r->pool, r->tile_count, decide_tile, sf_rounds_wake, r);
 }
 
 /* One round of the lap. A stop within it leaves it as it is, written down. */

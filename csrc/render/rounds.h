@@ -15,7 +15,7 @@
 #ifndef SUNFLECK_ROUNDS_H
 #define SUNFLECK_ROUNDS_H
 
-#include "base/pool.h"
+#include "base/parallel.h"
 #include "film/film_internal.h"
 #include "film/stopping.h"
 #include "render/checkpoint.h"
@@ -42,7 +42,7 @@ typedef struct sf_rounds {
     sf_render_context context;
     sf_render_options options;
     sf_film *film;
-    sf_pool *pool;
+    sf_thread_pool *pool;
     sf_rounds_worker *workers;
     uint64_t *open;   /* pixels that are not done, by cell of the film: bit m is pixel m of the cell in
                          Morton order */
@@ -58,9 +58,9 @@ typedef struct sf_rounds {
     bool in_lap;       /* a lap has begun and not ended */
     uint32_t look;     /* where the lap ends, unless the render does */
     sf_lap lap;
-    double target;   /* of a budget: half-widths beyond it are to be lowered */
-    sf_goal *goal;   /* of the whole picture; NULL where there is none */
-    uint64_t beyond; /* pixels that the goal still wants more samples of */
+    double target;          /* of a budget: half-widths beyond it are to be lowered */
+    sf_relmse_target *goal; /* of the whole picture; NULL where there is none */
+    uint64_t beyond;        /* pixels that the goal still wants more samples of */
     bool level_fixed;
     bool second; /* the pilot is over: the set that the picture shows is taken */
     double start, deadline;
@@ -72,7 +72,7 @@ typedef struct sf_rounds {
     sf_error checkpoint_error;
 } sf_rounds;
 
-static inline uint64_t sf_rounds_count(const sf_rounds *r, const uint64_t *cells) {
+static inline uint64_t sf_rounds_count_pixels(const sf_rounds *r, const uint64_t *cells) {
     uint64_t count = 0;
     for (size_t i = 0; i < sf_film_cell_count(r->film); ++i)
         count += sf_count_bits((uint32_t)cells[i]) + sf_count_bits((uint32_t)(cells[i] >> 32));
@@ -90,10 +90,10 @@ static inline sf_film_pixel *sf_rounds_pixel(const sf_rounds *r, uint32_t cell, 
 }
 
 /* Whether a pixel of the film is of the picture, not of the margin that was traced with it. */
-static inline bool sf_rounds_counts(const sf_rounds *r, uint32_t x, uint32_t y) {
+static inline bool sf_rounds_in_picture(const sf_rounds *r, uint32_t x, uint32_t y) {
     const sf_film *film = r->film;
     uint32_t u = x + film->x0 - film->crop_x0, v = y + film->y0 - film->crop_y0;
-    return u < film->crop_width && v < film->crop_height && sf_film_counts(film, u, v);
+    return u < film->crop_width && v < film->crop_height && sf_film_is_wanted(film, u, v);
 }
 
 static inline uint32_t sf_rounds_most(const sf_rounds *r) { return sf_stop_most(&r->options); }
@@ -126,7 +126,7 @@ static inline void sf_rounds_each_cell(sf_rounds *r, unsigned worker, uint32_t t
                 visit(r, r->workers + worker, y * r->film->cell_columns + x);
 }
 
-/* tile_sampling.c: takes the round's samples of a tile; an sf_pool_work_fn over the tiles listed. */
+/* tile_sampling.c: takes the round's samples of a tile; an sf_parallel_fn over the tiles listed. */
 void sf_rounds_sample_tile(void *user, unsigned worker, size_t item);
 
 /* pixel_selection.c: lists the tiles that have an active pixel. */
@@ -153,7 +153,7 @@ static inline void sf_rounds_set_deadline(sf_rounds *r) {
 /* Paths traced so far. */
 uint64_t sf_rounds_samples(const sf_rounds *r);
 
-/* Reports progress while a phase runs: an sf_pool_wait_fn. */
+/* Reports progress while a phase runs: an sf_parallel_wait_fn. */
 void sf_rounds_wake(void *user);
 
 /* Fills the summary's level from the film as it stands, and the tolerance from the level. */

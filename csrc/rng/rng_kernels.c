@@ -105,7 +105,7 @@ static void xoshiro256pp(sf_xoshiro256pp *state, size_t count, sf_rng_form form,
     *state = g;
 }
 
-const sf_rng_kernels SF_AT_LEVEL(sf_rng_kernels) = {
+const sf_rng_kernels SF_AT_ISA(sf_rng_kernels) = {
     .f32_from_u32 = f32_from_u32,
     .f64_from_u64 = f64_from_u64,
     .f64_from_u32 = f64_from_u32,

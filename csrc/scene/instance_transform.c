@@ -29,7 +29,7 @@ double sf_condition(const float m[9]) {
     return determinant == 0 ? (double)INFINITY : sqrt(own) * sqrt(inverse) / fabs(determinant);
 }
 
-void sf_place_vertex(const sf_scene *scene, const sf_scene_mesh *shape, const float *v, double out[3]) {
+void sf_instance_vertex(const sf_scene *scene, const sf_scene_mesh *shape, const float *v, double out[3]) {
     for (int r = 0; r < 3; ++r) {
         const float *row = shape->place.linear + 3 * r;
         out[r] = (double)v[r];
@@ -40,7 +40,8 @@ void sf_place_vertex(const sf_scene *scene, const sf_scene_mesh *shape, const fl
 }
 
 /* Arvo 1990, "Transforming Axis-Aligned Bounding Boxes". */
-void sf_place_box(const sf_place *place, const float lower[3], const float upper[3], double low[3], double high[3]) {
+void sf_instance_box(const sf_instance_transform *place, const float lower[3], const float upper[3], double low[3],
+                     double high[3]) {
     for (int r = 0; r < 3; ++r) {
         low[r] = high[r] = place->translation[r];
         for (int c = 0; c < 3; ++c) {
@@ -53,7 +54,7 @@ void sf_place_box(const sf_place *place, const float lower[3], const float upper
 }
 
 /* Gives Embree's instance its transform, from the moved prototype to the moved scene. */
-static void give_transform(const sf_scene *scene, const sf_place *place, unsigned number) {
+static void give_transform(const sf_scene *scene, const sf_instance_transform *place, unsigned number) {
     RTCGeometry geometry = rtcGetGeometry(scene->embree, number);
     float rows[12];
     for (int r = 0; r < 3; ++r) {
@@ -66,7 +67,7 @@ static void give_transform(const sf_scene *scene, const sf_place *place, unsigne
 
 /* Normals go by the inverse transposed, which is the cofactors over the determinant. Without its size they
  * have the length that the triangle's cross product has in the scene; its sign keeps the side. */
-static void turn_of(const sf_scene *scene, const sf_place *place, float turn[9]) {
+static void turn_of(const sf_scene *scene, const sf_instance_transform *place, float turn[9]) {
     double cofactors[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, sign = 1;
     if (place->placed) sign = sf_cofactors(place->linear, cofactors) < 0 ? -1 : 1;
     for (int i = 0; i < 9; ++i) turn[i] = (float)(sign * cofactors[i] * (double)scene->normal_scale);
@@ -78,7 +79,8 @@ sf_status sf_instances_build(sf_scene *scene, sf_error *error) {
     scene->turns = sf_aligned_alloc(rows * sizeof *scene->turns);
     if (!scene->turns) return sf_fail_memory(error, "the normals of instances", rows * sizeof *scene->turns);
     for (size_t i = 0; i < rows; ++i)
-        turn_of(scene, i < scene->info.mesh_count ? &scene->meshes[i].place : &(sf_place){0}, scene->turns[i]);
+        turn_of(scene, i < scene->info.mesh_count ? &scene->meshes[i].place : &(sf_instance_transform){0},
+                scene->turns[i]);
     for (size_t i = 0; i < scene->prototype_count; ++i) {
         RTCScene embree = scene->prototypes[i].embree;
         if (!embree) continue;
@@ -86,7 +88,7 @@ sf_status sf_instances_build(sf_scene *scene, sf_error *error) {
         rtcCommitScene(embree);
     }
     for (size_t i = 0; i < scene->info.mesh_count; ++i) {
-        const sf_place *place = &scene->meshes[i].place;
+        const sf_instance_transform *place = &scene->meshes[i].place;
         if (place->placed && place->member == 0) give_transform(scene, place, (unsigned)i);
     }
     int code = (int)rtcGetDeviceError(scene->device);
@@ -114,7 +116,7 @@ static double reach_of_scene(const sf_scene *scene) {
  * squashed up to 10^4-fold, twice is too little. The ray's own coordinates are in the lift of every hit
  * (rays.h), but for transforms that stretch much more along one axis than along another. */
 static double lift_of(const sf_scene *scene, const sf_scene_mesh *row, double reach_of_all) {
-    const sf_place *place = &row->place;
+    const sf_instance_transform *place = &row->place;
     const sf_prototype *p = scene->prototypes + place->prototype;
     double condition = sf_condition(place->linear), reach = 0, stretch = 0;
     for (int r = 0; r < 3; ++r) {

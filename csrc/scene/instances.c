@@ -49,7 +49,7 @@ static sf_status take_meshes(sf_prototype *p, const sf_mesh *meshes, size_t coun
 static sf_status attach_meshes(const sf_scene *scene, sf_prototype *p, sf_error *error) {
     p->embree = rtcNewScene(scene->device);
     if (!p->embree) return sf_fail_embree(error, (int)rtcGetDeviceError(scene->device), "gave no scene for instances");
-    bool far = sf_choose_shift(&p->dark, p->offset);
+    bool far = sf_scene_far_shift(&p->dark, p->offset);
     for (uint32_t i = 0; i < p->dark_count; ++i) {
         sf_status status = far ? sf_mesh_move(p->meshes + i, p->offset, &p->dark, error) : SF_STATUS_OK;
         if (!status) status = sf_scene_attach_mesh(scene->device, p->embree, &p->meshes[i].mesh, i, error);
@@ -92,8 +92,8 @@ sf_status sf_scene_add_prototype(sf_scene *scene, const sf_mesh *meshes, size_t 
 /* ---- placements ---- */
 
 /* The place of a transform, before the prototype's offset. */
-static sf_place place_of(const float *transform) {
-    sf_place place = {.placed = true};
+static sf_instance_transform place_of(const float *transform) {
+    sf_instance_transform place = {.placed = true};
     for (int r = 0; r < 3; ++r) {
         memcpy(place.linear + 3 * r, transform + 4 * r, 12);
         place.translation[r] = (double)transform[4 * r + 3];
@@ -107,7 +107,7 @@ static sf_status check_transform(const float *transform, size_t number, sf_error
             return sf_fail(error, SF_STATUS_INVALID_VALUE,
                            "transform %zu: row %d, column %d is %g; it must be finite and at most %g in size", number,
                            i / 4, i % 4, (double)transform[i], (double)SF_LENGTH_LIMIT);
-    sf_place place = place_of(transform);
+    sf_instance_transform place = place_of(transform);
     double cofactors[9], determinant = sf_cofactors(place.linear, cofactors), condition = sf_condition(place.linear);
     if (!(condition <= CONDITION_LIMIT))
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
@@ -143,10 +143,10 @@ static sf_status check_reach(const sf_prototype *p, const sf_instances *instance
     for (size_t i = 0; i < instances->count; ++i)
         for (int lit = 0; lit < 2; ++lit) {
             const sf_scene_info *info = lit ? &p->lit : &p->dark;
-            sf_place place = place_of(instances->transforms + 12 * i);
+            sf_instance_transform place = place_of(instances->transforms + 12 * i);
             double low[3], high[3];
             if (info->triangle_count == 0) continue;
-            sf_place_box(&place, info->bounds_lower, info->bounds_upper, low, high);
+            sf_instance_box(&place, info->bounds_lower, info->bounds_upper, low, high);
             for (int c = 0; c < 3; ++c)
                 if (!(fmax(fabs(low[c]), fabs(high[c])) <= (double)SF_LENGTH_LIMIT))
                     return sf_fail(error, SF_STATUS_INVALID_VALUE,
@@ -161,9 +161,9 @@ static sf_status place_dark(sf_scene *scene, uint32_t number, const float *trans
                             sf_error *error) {
     const sf_prototype *p = scene->prototypes + number;
     sf_scene_info *info = &scene->info;
-    sf_place place = place_of(transform);
+    sf_instance_transform place = place_of(transform);
     double low[3], high[3];
-    sf_place_box(&place, p->dark.bounds_lower, p->dark.bounds_upper, low, high);
+    sf_instance_box(&place, p->dark.bounds_lower, p->dark.bounds_upper, low, high);
     place.prototype = number;
     for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c) place.translation[r] += (double)place.linear[3 * r + c] * (double)p->offset[c];
@@ -199,7 +199,7 @@ static sf_status place_dark(sf_scene *scene, uint32_t number, const float *trans
 static sf_status place_lit(sf_scene *scene, const sf_scene_mesh *from, const float *transform, const float *albedo,
                            sf_error *error) {
     sf_scene_mesh kept = {.mesh = from->mesh};
-    sf_place place = place_of(transform);
+    sf_instance_transform place = place_of(transform);
     size_t vertices = kept.mesh.vertex_count, triangles = kept.mesh.triangle_count;
     double cofactors[9];
     bool mirror = sf_cofactors(place.linear, cofactors) < 0;

@@ -73,20 +73,20 @@ static bool triangle_is_near(const near_light *l, const sf_scene *scene, const s
     bool front = false;
     for (int k = 0; k < 3; ++k) {
         const float *p = mesh->vertices + 3 * (size_t)mesh->triangles[3 * triangle + (size_t)k];
-        sf_place_vertex(scene, shape, p, v[k]);
+        sf_instance_vertex(scene, shape, p, v[k]);
         front |= dot(v[k], l->normal) > l->level;
     }
     return front && box_within(l->middle, v, l->square) && triangle_square(l->middle, v) < l->square;
 }
 
-static bool round_is_near(const near_light *l, const sf_round *round) {
+static bool quadric_is_near(const near_light *l, const sf_quadric *quadric) {
     double square = 0, level = 0;
     for (int c = 0; c < 3; ++c) {
-        double off = (double)round->centre[c] - l->middle[c];
+        double off = (double)quadric->centre[c] - l->middle[c];
         square += off * off;
-        level += (double)round->centre[c] * l->normal[c];
+        level += (double)quadric->centre[c] * l->normal[c];
     }
-    return sqrt(square) - (double)round->radius < sqrt(l->square) && level + (double)round->radius > l->level;
+    return sqrt(square) - (double)quadric->radius < sqrt(l->square) && level + (double)quadric->radius > l->level;
 }
 
 /* Whether the box about a placed mesh is: its triangles need be asked only then. */
@@ -98,7 +98,7 @@ static bool place_is_near(const near_light *l, const sf_scene *scene, const sf_s
         lower[c] = prototype->dark.bounds_lower[c] - prototype->offset[c];
         upper[c] = prototype->dark.bounds_upper[c] - prototype->offset[c];
     }
-    sf_place_box(&shape->place, lower, upper, box[0], box[1]);
+    sf_instance_box(&shape->place, lower, upper, box[0], box[1]);
     for (int c = 0; c < 3; ++c) {
         box[0][c] -= (double)scene->shift[c];
         box[1][c] -= (double)scene->shift[c];
@@ -111,7 +111,7 @@ static bool surfaces_are_near(const sf_scene *scene, const near_light *l) {
     for (size_t m = 0; m < scene->info.mesh_count; ++m) {
         const sf_mesh *mesh = &scene->meshes[m].mesh;
         if (!sf_reflects(mesh)) continue;
-        if (scene->meshes[m].round.kind && round_is_near(l, &scene->meshes[m].round)) return true;
+        if (scene->meshes[m].quadric.kind && quadric_is_near(l, &scene->meshes[m].quadric)) return true;
         if (scene->meshes[m].place.placed && !place_is_near(l, scene, scene->meshes + m)) continue;
         for (size_t t = 0; t < mesh->triangle_count; ++t)
             if (triangle_is_near(l, scene, scene->meshes + m, t)) return true;

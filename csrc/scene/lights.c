@@ -180,15 +180,15 @@ static double write_flat(float *piece, const sf_mesh *mesh, const candidate *fro
 }
 
 /* A disk is sampled by area, a sphere by the cone that it fills. Returns the area. */
-static double write_round(float *piece, const sf_round *round) {
-    float radius = round->radius, tangent[3], bitangent[3];
-    bool disk = round->kind == SF_ROUND_DISK;
-    sf_frame_from_normal(round->normal, tangent, bitangent);
+static double write_quadric(float *piece, const sf_quadric *quadric) {
+    float radius = quadric->radius, tangent[3], bitangent[3];
+    bool disk = quadric->kind == SF_QUADRIC_DISK;
+    sf_frame_from_normal(quadric->normal, tangent, bitangent);
     for (int c = 0; c < 3; ++c) {
-        piece[SF_LIGHT_ORIGIN_X + c] = round->centre[c];
+        piece[SF_LIGHT_ORIGIN_X + c] = quadric->centre[c];
         piece[SF_LIGHT_EDGE1_X + c] = disk ? radius * tangent[c] : c == 0 ? radius : 0;
         piece[SF_LIGHT_EDGE2_X + c] = disk ? radius * bitangent[c] : 0;
-        piece[SF_LIGHT_NORMAL_X + c] = round->normal[c];
+        piece[SF_LIGHT_NORMAL_X + c] = quadric->normal[c];
     }
     piece[SF_LIGHT_KIND] = (float)(disk ? SF_LIGHT_IS_DISK : SF_LIGHT_IS_SPHERE);
     return (disk ? PI : 4 * PI) * ((double)radius * radius);
@@ -235,9 +235,9 @@ static void write_pieces(sf_scene *scene, const candidate *candidates, size_t co
     }
     for (uint32_t m = 0; m < scene->info.mesh_count; ++m) {
         const sf_scene_mesh *shape = scene->meshes + m;
-        if (!shape->round.kind || !sf_emits(&shape->mesh)) continue;
-        double area = write_round(pieces[row], &shape->round);
-        sources[row++] = source_of(&shape->mesh, m, area, shape->round.kind == SF_ROUND_DISK);
+        if (!shape->quadric.kind || !sf_emits(&shape->mesh)) continue;
+        double area = write_quadric(pieces[row], &shape->quadric);
+        sources[row++] = source_of(&shape->mesh, m, area, shape->quadric.kind == SF_QUADRIC_DISK);
     }
     write_sky(scene, pieces + row, sources + row);
 }
@@ -267,14 +267,14 @@ static sf_status map_primitives(sf_scene *scene, const candidate *candidates, si
     for (size_t m = 0; m < meshes; ++m) {
         const sf_scene_mesh *shape = scene->meshes + m;
         lights->first_of_mesh[m] = primitives;
-        if (sf_emits(&shape->mesh)) primitives += shape->round.kind ? 1 : shape->mesh.triangle_count;
+        if (sf_emits(&shape->mesh)) primitives += shape->quadric.kind ? 1 : shape->mesh.triangle_count;
     }
     lights->of_primitive = calloc(primitives + 1, sizeof *lights->of_primitive);
     if (!lights->of_primitive) return sf_fail_memory(error, "the triangles of the lights", primitives * 4);
     map_triangles(lights, candidates, count);
     for (size_t i = 0; i < count; ++i) row += !candidates[i].absorbed;
     for (size_t m = 0; m < meshes; ++m)
-        if (scene->meshes[m].round.kind && sf_emits(&scene->meshes[m].mesh))
+        if (scene->meshes[m].quadric.kind && sf_emits(&scene->meshes[m].mesh))
             lights->of_primitive[lights->first_of_mesh[m]] = (uint32_t)row++;
     return SF_STATUS_OK;
 }
@@ -284,7 +284,7 @@ static sf_status map_primitives(sf_scene *scene, const candidate *candidates, si
 static size_t count_others(const sf_scene *scene) {
     size_t count = scene->info.sun_count + (scene->environment.pixels != NULL);
     for (size_t m = 0; m < scene->info.mesh_count; ++m)
-        count += scene->meshes[m].round.kind && sf_emits(&scene->meshes[m].mesh);
+        count += scene->meshes[m].quadric.kind && sf_emits(&scene->meshes[m].mesh);
     return count;
 }
 

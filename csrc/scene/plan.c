@@ -17,7 +17,7 @@ const char *sf_stage_name(sf_stage stage) {
         case SF_STAGE_LENS: return "lens";
         case SF_STAGE_INTERSECT: return "intersect";
         case SF_STAGE_INSTANCES: return "instances";
-        case SF_STAGE_ROUND: return "round shapes";
+        case SF_STAGE_QUADRIC: return "round shapes";
         case SF_STAGE_FOG: return "fog";
         case SF_STAGE_MISS: return "miss";
         case SF_STAGE_SKY: return "sky";
@@ -50,7 +50,7 @@ const char *sf_dimension_use_name(sf_dimension_use use) {
 
 /* What the scene holds, as far as the plan depends on it. */
 typedef struct contents {
-    bool emission, background, lens, instances, round, sky, special, tree, fog;
+    bool emission, background, lens, instances, quadric, sky, special, tree, fog;
     bool wide;      /* an environment whose light comes from many directions */
     bool spreading; /* surfaces that scatter in more directions than few: diffuse or rough */
     bool scatter;   /* surfaces that are not diffuse; */
@@ -63,7 +63,7 @@ static contents survey(const sf_scene *scene) {
     contents has = {.lights = scene->lights.count,
                     .lens = scene->camera.aperture_radius > 0,
                     .instances = sf_has_instances(scene),
-                    .round = scene->rounds != NULL,
+                    .quadric = scene->quadrics != NULL,
                     .wide = scene->sky.spread > WIDE,
                     .special = scene->lights.special,
                     .tree = scene->lights.tree != NULL,
@@ -91,7 +91,7 @@ static uint32_t choose_stages(const contents *has, uint32_t max_bounces) {
     NEED(!has->lens, SF_STAGE_CAMERA);
     NEED(has->lens, SF_STAGE_LENS);
     NEED(has->instances, SF_STAGE_INSTANCES);
-    NEED(has->round, SF_STAGE_ROUND);
+    NEED(has->quadric, SF_STAGE_QUADRIC);
     NEED(has->fog, SF_STAGE_FOG);
     NEED(has->background, SF_STAGE_MISS);
     NEED(has->sky, SF_STAGE_SKY);

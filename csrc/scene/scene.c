@@ -60,7 +60,7 @@ void sf_scene_destroy(sf_scene *scene) {
     for (int c = 0; c < SF_MESH_COLUMNS; ++c) sf_aligned_free(scene->mesh_table.columns[c]);
     sf_lights_free(&scene->lights);
     sf_sky_free(&scene->sky);
-    sf_aligned_free(scene->rounds);
+    sf_aligned_free(scene->quadrics);
     sf_aligned_free(scene->turns);
     free(scene->suns);
     free(scene);
@@ -361,11 +361,11 @@ static sf_status build_mesh_table(sf_scene *scene, sf_error *error) {
 static sf_status build_rounds(sf_scene *scene, sf_error *error) {
     const sf_scene_info *info = &scene->info;
     if (info->sphere_count + info->disk_count == 0) return SF_STATUS_OK;
-    size_t bytes = (info->mesh_count + 1 + sf_foggy(scene)) * sizeof *scene->rounds;
-    scene->rounds = sf_aligned_alloc(bytes);
-    if (!scene->rounds) return sf_fail_memory(error, "the table of spheres and disks", bytes);
-    memset(scene->rounds, 0, bytes);
-    for (size_t i = 0; i < info->mesh_count; ++i) scene->rounds[i] = scene->meshes[i].round;
+    size_t bytes = (info->mesh_count + 1 + sf_foggy(scene)) * sizeof *scene->quadrics;
+    scene->quadrics = sf_aligned_alloc(bytes);
+    if (!scene->quadrics) return sf_fail_memory(error, "the table of spheres and disks", bytes);
+    memset(scene->quadrics, 0, bytes);
+    for (size_t i = 0; i < info->mesh_count; ++i) scene->quadrics[i] = scene->meshes[i].quadric;
     return SF_STATUS_OK;
 }
 
@@ -399,8 +399,8 @@ static void drop_tables(sf_scene *scene) {
     }
     sf_lights_free(&scene->lights);
     sf_sky_free(&scene->sky);
-    sf_aligned_free(scene->rounds);
-    scene->rounds = NULL;
+    sf_aligned_free(scene->quadrics);
+    scene->quadrics = NULL;
     sf_aligned_free(scene->turns);
     scene->turns = NULL;
 }
@@ -435,7 +435,7 @@ sf_status sf_scene_commit(sf_scene *scene, sf_error *error) {
     drop_tables(scene);
     scene->back = scene->robust ? 1.0f : 0.0f;
     if (scene->robust) rtcSetSceneFlags(scene->embree, RTC_SCENE_FLAG_ROBUST);
-    status = sf_scene_recentre(scene, error);
+    status = sf_scene_recenter(scene, error);
     if (!status) status = build_mesh_table(scene, error);
     if (!status) status = build_rounds(scene, error);
     if (!status) status = sf_sky_build(scene, error);

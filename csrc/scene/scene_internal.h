@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /* What a scene holds inside: the tables that shading reads, the lights, the plan. */
-#ifndef SUNFLECK_SCENE_DATA_H
-#define SUNFLECK_SCENE_DATA_H
+#ifndef SUNFLECK_SCENE_INTERNAL_H
+#define SUNFLECK_SCENE_INTERNAL_H
 
 #include <stdbool.h>
 
@@ -137,28 +137,28 @@ typedef struct sf_sky {
 } sf_sky;
 
 /* What a sphere or disk is, by geometry number: middle, radius, normal, kind. */
-typedef enum sf_round_kind { SF_NOT_ROUND, SF_ROUND_SPHERE, SF_ROUND_DISK } sf_round_kind;
-typedef struct sf_round {
+typedef enum sf_quadric_kind { SF_NO_QUADRIC, SF_QUADRIC_SPHERE, SF_QUADRIC_DISK } sf_quadric_kind;
+typedef struct sf_quadric {
     float centre[3], radius, normal[3];
-    uint32_t kind; /* sf_round_kind */
-} sf_round;
+    uint32_t kind; /* sf_quadric_kind */
+} sf_quadric;
 
 /* Where a mesh of a prototype is placed: its vertex v is at linear v + translation - the scene's shift. */
-typedef struct sf_place {
+typedef struct sf_instance_transform {
     bool placed;                /* if not, the rest is 0 */
     uint32_t prototype, member; /* whose mesh it is; Embree's instance has the number of member 0 */
     float linear[9];            /* by rows */
     double translation[3];
-} sf_place;
+} sf_instance_transform;
 
 /* A mesh as the scene keeps it. */
 typedef struct sf_scene_mesh {
     sf_mesh mesh;       /* its arrays are the caller's, or the copies below */
     float *vertex_copy; /* NULL where Embree reads the caller's */
     uint32_t *index_copy;
-    sf_round round; /* where it is no mesh, but a sphere or disk: `mesh` has no arrays then */
-    float longest;  /* edge of its triangles, by its largest coordinate */
-    sf_place place; /* where it is placed: `mesh` has the prototype's arrays then */
+    sf_quadric quadric;          /* where it is no mesh, but a sphere or disk: `mesh` has no arrays then */
+    float longest;               /* edge of its triangles, by its largest coordinate */
+    sf_instance_transform place; /* where it is placed: `mesh` has the prototype's arrays then */
 } sf_scene_mesh;
 
 /* Meshes that are placed together. Those that emit are not in Embree's scene of them, but copied for
@@ -197,7 +197,7 @@ struct sf_scene {
     sf_environment environment;
     sf_fog fog;
     sf_sky sky;
-    sf_round *rounds; /* by geometry number, and the row of a miss; NULL without spheres and disks */
+    sf_quadric *quadrics; /* by geometry number, and the row of a miss; NULL without spheres and disks */
     sf_prototype *prototypes;
     size_t prototype_count, prototype_capacity;
     size_t prototype_mesh_count, placed_count; /* meshes of all prototypes; rows that are placements of them */
@@ -278,9 +278,9 @@ sf_status sf_fog_check(const sf_scene *scene, sf_error *error);
 void sf_fog_tabulate(const sf_scene *scene, sf_mesh_table *table);
 
 /* scene_recenter.c: moves a scene that lies far from the origin there. */
-sf_status sf_scene_recentre(sf_scene *scene, sf_error *error);
+sf_status sf_scene_recenter(sf_scene *scene, sf_error *error);
 /* Whether things of these bounds lie far from the origin, and what to subtract from them then. */
-bool sf_choose_shift(const sf_scene_info *info, float shift[3]);
+bool sf_scene_far_shift(const sf_scene_info *info, float shift[3]);
 /* Subtracts it from the vertices, of which the mesh has a copy then. */
 sf_status sf_mesh_move(sf_scene_mesh *kept, const float shift[3], sf_scene_info *info, sf_error *error);
 
@@ -296,9 +296,10 @@ double sf_cofactors(const float linear[9], double out[9]);
 /* The product of the Frobenius norms of the linear part and its inverse: 3 of a rotation, infinite if singular. */
 double sf_condition(const float linear[9]);
 /* Where a mesh's vertex lies in the scene. */
-void sf_place_vertex(const sf_scene *scene, const sf_scene_mesh *shape, const float *vertex, double out[3]);
+void sf_instance_vertex(const sf_scene *scene, const sf_scene_mesh *shape, const float *vertex, double out[3]);
 /* The box about the placed box that is given; about a rotated mesh it is larger than need be. */
-void sf_place_box(const sf_place *place, const float lower[3], const float upper[3], double low[3], double high[3]);
+void sf_instance_box(const sf_instance_transform *place, const float lower[3], const float upper[3], double low[3],
+                     double high[3]);
 
 /* A triangle whose edges have coordinates of at most `longest` is intersected with an error, along its
  * normal, of some 2^-21 of them: Embree computes the distance of its plane from a corner. Measured on

@@ -15,7 +15,7 @@
 /* Moves along the axes on which the scene lies far: to the middle of its bounds. Of what lies at
  * least FAR sizes from 0 within one size the least and the greatest coordinates are within a factor
  * of 2, so that differences are exact (Sterbenz 1974, theorem 4.3.1). */
-bool sf_choose_shift(const sf_scene_info *info, float shift[3]) {
+bool sf_scene_far_shift(const sf_scene_info *info, float shift[3]) {
     float extent = 0;
     bool far = false;
     for (int c = 0; c < 3; ++c) extent = fmaxf(extent, info->bounds_upper[c] - info->bounds_lower[c]);
@@ -49,14 +49,14 @@ static sf_status move_mesh(sf_scene *scene, sf_scene_mesh *kept, RTCGeometry geo
     return SF_STATUS_OK;
 }
 
-static void move_round(const sf_scene *scene, sf_round *round, RTCGeometry geometry) {
+static void move_quadric(const sf_scene *scene, sf_quadric *quadric, RTCGeometry geometry) {
     float *vertex = rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
-    for (int c = 0; c < 3; ++c) vertex[c] = round->centre[c] -= scene->shift[c];
+    for (int c = 0; c < 3; ++c) vertex[c] = quadric->centre[c] -= scene->shift[c];
     rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
 }
 
-sf_status sf_scene_recentre(sf_scene *scene, sf_error *error) {
-    if (!scene->moved_count && !sf_choose_shift(&scene->info, scene->shift)) return SF_STATUS_OK;
+sf_status sf_scene_recenter(sf_scene *scene, sf_error *error) {
+    if (!scene->moved_count && !sf_scene_far_shift(&scene->info, scene->shift)) return SF_STATUS_OK;
     for (size_t i = scene->moved_count; i < scene->info.mesh_count; ++i) {
         sf_scene_mesh *kept = scene->meshes + i;
         if (kept->place.placed) { /* by a transform, which instance_transform.c moves */
@@ -64,8 +64,8 @@ sf_status sf_scene_recentre(sf_scene *scene, sf_error *error) {
             continue;
         }
         RTCGeometry geometry = rtcGetGeometry(scene->embree, (unsigned)i);
-        if (kept->round.kind)
-            move_round(scene, &kept->round, geometry);
+        if (kept->quadric.kind)
+            move_quadric(scene, &kept->quadric, geometry);
         else {
             sf_status status = move_mesh(scene, kept, geometry, error);
             if (status) return status;

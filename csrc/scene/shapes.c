@@ -27,27 +27,27 @@ static sf_status unit_vector(const char *what, const float v[3], float out[3], s
     return SF_STATUS_OK;
 }
 
-static sf_status check_round(const char *what, const sf_round *round, const sf_mesh *surface, sf_error *error) {
-    sf_status status = sf_scene_check_vector(what, round->centre, error);
-    if (!status && !(round->radius >= LEAST_RADIUS && round->radius <= SF_LENGTH_LIMIT))
-        status = sf_fail(error, SF_STATUS_INVALID_VALUE, "radius is %g; it must be in [%g, %g]", (double)round->radius,
-                         (double)LEAST_RADIUS, (double)SF_LENGTH_LIMIT);
+static sf_status check_quadric(const char *what, const sf_quadric *quadric, const sf_mesh *surface, sf_error *error) {
+    sf_status status = sf_scene_check_vector(what, quadric->centre, error);
+    if (!status && !(quadric->radius >= LEAST_RADIUS && quadric->radius <= SF_LENGTH_LIMIT))
+        status = sf_fail(error, SF_STATUS_INVALID_VALUE, "radius is %g; it must be in [%g, %g]",
+                         (double)quadric->radius, (double)LEAST_RADIUS, (double)SF_LENGTH_LIMIT);
     if (!status) status = sf_scene_check_color("albedo", surface->albedo, 1, error);
     if (!status) status = sf_scene_check_color("emission", surface->emission, SF_RADIANCE_LIMIT, error);
     return status ? status : sf_material_check(&surface->material, error);
 }
 
-static sf_status attach_round(sf_scene *scene, const sf_round *round, uint32_t number, sf_error *error) {
-    bool disk = round->kind == SF_ROUND_DISK;
+static sf_status attach_quadric(sf_scene *scene, const sf_quadric *quadric, uint32_t number, sf_error *error) {
+    bool disk = quadric->kind == SF_QUADRIC_DISK;
     RTCGeometry geometry =
         rtcNewGeometry(scene->device, disk ? RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT : RTC_GEOMETRY_TYPE_SPHERE_POINT);
     float *vertex = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, 1);
     float *normal =
         disk ? rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3, 12, 1) : NULL;
     if (vertex && (normal || !disk)) {
-        memcpy(vertex, round->centre, 12);
-        vertex[3] = round->radius;
-        if (disk) memcpy(normal, round->normal, 12);
+        memcpy(vertex, quadric->centre, 12);
+        vertex[3] = quadric->radius;
+        if (disk) memcpy(normal, quadric->normal, 12);
         rtcCommitGeometry(geometry);
         rtcAttachGeometryByID(scene->embree, geometry, number);
     }
@@ -58,30 +58,31 @@ static sf_status attach_round(sf_scene *scene, const sf_round *round, uint32_t n
 }
 
 /* Takes its bounds and values into the scene's. */
-static void survey_round(sf_scene_info *info, const sf_round *round, const sf_mesh *surface) {
+static void survey_quadric(sf_scene_info *info, const sf_quadric *quadric, const sf_mesh *surface) {
     for (int c = 0; c < 3; ++c) {
-        double n = (double)round->normal[c], radius = (double)round->radius;
-        double reach = round->kind == SF_ROUND_DISK ? radius * sqrt(fmax(1 - n * n, 0)) : radius;
-        info->bounds_lower[c] = fminf(info->bounds_lower[c], (float)((double)round->centre[c] - reach));
-        info->bounds_upper[c] = fmaxf(info->bounds_upper[c], (float)((double)round->centre[c] + reach));
+        double n = (double)quadric->normal[c], radius = (double)quadric->radius;
+        double reach = quadric->kind == SF_QUADRIC_DISK ? radius * sqrt(fmax(1 - n * n, 0)) : radius;
+        info->bounds_lower[c] = fminf(info->bounds_lower[c], (float)((double)quadric->centre[c] - reach));
+        info->bounds_upper[c] = fmaxf(info->bounds_upper[c], (float)((double)quadric->centre[c] + reach));
     }
-    info->hash = sf_scene_hash(info->hash, round, sizeof *round);
+    info->hash = sf_scene_hash(info->hash, quadric, sizeof *quadric);
     info->hash = sf_scene_hash(info->hash, surface->albedo, sizeof surface->albedo);
     info->hash = sf_scene_hash(info->hash, surface->emission, sizeof surface->emission);
     info->hash = sf_material_hash(info->hash, &surface->material);
-    ++*(round->kind == SF_ROUND_DISK ? &info->disk_count : &info->sphere_count);
+    ++*(quadric->kind == SF_QUADRIC_DISK ? &info->disk_count : &info->sphere_count);
 }
 
-static sf_status add_round(sf_scene *scene, const sf_round *round, const sf_mesh *surface, sf_error *error) {
+static sf_status add_quadric(sf_scene *scene, const sf_quadric *quadric, const sf_mesh *surface, sf_error *error) {
     sf_status status = sf_scene_refuse_committed(scene, error);
     if (!status)
-        status = check_round(round->kind == SF_ROUND_DISK ? "disk centre" : "sphere centre", round, surface, error);
+        status =
+            check_quadric(quadric->kind == SF_QUADRIC_DISK ? "disk centre" : "sphere centre", quadric, surface, error);
     if (!status) status = sf_scene_reserve_mesh(scene, error);
     uint32_t number = (uint32_t)scene->info.mesh_count;
-    if (!status) status = attach_round(scene, round, number, error);
+    if (!status) status = attach_quadric(scene, quadric, number, error);
     if (status) return status;
-    scene->meshes[number] = (sf_scene_mesh){.mesh = *surface, .round = *round};
-    survey_round(&scene->info, round, surface);
+    scene->meshes[number] = (sf_scene_mesh){.mesh = *surface, .quadric = *quadric};
+    survey_quadric(&scene->info, quadric, surface);
     ++scene->info.mesh_count;
     return SF_STATUS_OK;
 }
@@ -97,16 +98,16 @@ static sf_mesh surface_of(const float albedo[3], const float emission[3], const 
 
 sf_status sf_scene_add_sphere(sf_scene *scene, const sf_sphere *sphere, sf_error *error) {
     sf_mesh surface = surface_of(sphere->albedo, sphere->emission, &sphere->material);
-    sf_round round = {.radius = sphere->radius, .kind = SF_ROUND_SPHERE};
-    memcpy(round.centre, sphere->centre, sizeof round.centre);
-    return add_round(scene, &round, &surface, error);
+    sf_quadric quadric = {.radius = sphere->radius, .kind = SF_QUADRIC_SPHERE};
+    memcpy(quadric.centre, sphere->centre, sizeof quadric.centre);
+    return add_quadric(scene, &quadric, &surface, error);
 }
 
 sf_status sf_scene_add_disk(sf_scene *scene, const sf_disk *disk, sf_error *error) {
     sf_mesh surface = surface_of(disk->albedo, disk->emission, &disk->material);
-    sf_round round = {.radius = disk->radius, .kind = SF_ROUND_DISK};
-    memcpy(round.centre, disk->centre, sizeof round.centre);
+    sf_quadric quadric = {.radius = disk->radius, .kind = SF_QUADRIC_DISK};
+    memcpy(quadric.centre, disk->centre, sizeof quadric.centre);
     sf_status status = sf_scene_check_vector("disk normal", disk->normal, error);
-    if (!status) status = unit_vector("disk normal", disk->normal, round.normal, error);
-    return status ? status : add_round(scene, &round, &surface, error);
+    if (!status) status = unit_vector("disk normal", disk->normal, quadric.normal, error);
+    return status ? status : add_quadric(scene, &quadric, &surface, error);
 }

@@ -61,4 +61,4 @@ static void depth(const sf_batch *b, const sf_mesh_table *meshes, const float fo
     }
 }
 
-const sf_aov_kernels SF_AT_LEVEL(sf_aov_kernels) = {albedo, normal, depth};
+const sf_aov_kernels SF_AT_ISA(sf_aov_kernels) = {albedo, normal, depth};

@@ -8,15 +8,15 @@
 #include "film/aov.h"
 #include "trace/aov_kernels.h"
 #include "trace/camera_kernels.h"
-#include "trace/sample_dimensions_kernels.h"
 #include "trace/fog_kernels.h"
 #include "trace/gather_kernels.h"
 #include "trace/light_kernels.h"
 #include "trace/light_shape_kernels.h"
 #include "trace/material_kernels.h"
 #include "trace/order_kernels.h"
-#include "trace/rays.h"
 #include "trace/quadric_kernels.h"
+#include "trace/rays.h"
+#include "trace/sample_dimensions_kernels.h"
 #include "trace/shade_kernels.h"
 #include "trace/sky_kernels.h"
 #include "trace/trace_kernels.h"
@@ -25,7 +25,7 @@
 typedef struct run {
     sf_batch *batch;
     const sf_render_context *context;
-    const sf_coordinates_kernels *coordinates;
+    const sf_sample_dimensions_kernels *coordinates;
     const sf_shade_kernels *shade;
     const sf_order_kernels *order;
     const sf_trace_kernels *trace;
@@ -43,7 +43,7 @@ static bool has(const run *r, sf_stage stage) { return sf_plan_has(&r->context->
 
 /* Fills `out` with the source's coordinates. */
 static void fill_coordinates(run *r, const sf_coordinate_source *source, float (*out)[SF_PATHS]) {
-    const sf_coordinates *coordinates = &r->context->coordinates;
+    const sf_sample_dimensions *coordinates = &r->context->coordinates;
     sf_batch *b = r->batch;
     begin(r, SF_WORK_COORDINATES);
     if (b->width == SF_LANES)
@@ -70,11 +70,11 @@ static void optional_coordinates(run *r, sf_dimension_use use, uint32_t bounce, 
         }
 }
 
-/* The nearest hits, with the normals of what is round. */
+/* The nearest hits, with the normals of what is quadric. */
 static void trace_nearest(run *r, uint32_t packets, const uint32_t *active, sf_coherence coherence) {
     const sf_scene *scene = r->context->scene;
     r->trace->nearest(r->batch, scene, packets, active, coherence);
-    if (has(r, SF_STAGE_ROUND)) sf_round_kernels_at(r->context->isa)->face(r->batch, scene, packets * SF_LANES);
+    if (has(r, SF_STAGE_QUADRIC)) sf_quadric_kernels_at(r->context->isa)->face(r->batch, scene, packets * SF_LANES);
 }
 
 /* The sums over first hits, after the camera's rays were traced and before others are. */
@@ -210,7 +210,7 @@ static void place_vertices(run *r, uint32_t bounce, uint32_t count) {
         r->shade->first_vertex(b, scene);
     else
         r->shade->later_vertex(b, scene, count);
-    if (has(r, SF_STAGE_ROUND)) sf_round_kernels_at(r->context->isa)->settle(b, scene, count);
+    if (has(r, SF_STAGE_QUADRIC)) sf_quadric_kernels_at(r->context->isa)->settle(b, scene, count);
 }
 
 /* Leaves the vertices where the path goes on, moved together. */
@@ -226,7 +226,7 @@ static uint32_t compact(run *r, uint32_t count) {
 void sf_batch_run(sf_batch *batch, const sf_render_context *context) {
     run r = {.batch = batch,
              .context = context,
-             .coordinates = sf_coordinates_kernels_at(context->isa),
+             .coordinates = sf_sample_dimensions_kernels_at(context->isa),
              .shade = sf_shade_kernels_at(context->isa),
              .order = sf_order_kernels_at(context->isa),
              .trace = sf_trace_kernels_at(context->isa),

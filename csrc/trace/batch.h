@@ -33,7 +33,7 @@ sf_camera_frame sf_camera_frame_of(const sf_camera *camera, uint32_t width, uint
 /* What the batches of a render have in common; immutable while it runs. */
 typedef struct sf_render_context {
     const sf_scene *scene;
-    sf_coordinates coordinates;
+    sf_sample_dimensions coordinates;
     sf_camera_frame camera;
     sf_pixel_filter filter;
     bool signed_filter; /* it has negative lobes */

@@ -97,4 +97,4 @@ static void camera(sf_batch *b, const sf_camera_frame *frame, sf_pixel_filter fi
     normalize_directions(b);
 }
 
-const sf_camera_kernels SF_AT_LEVEL(sf_camera_kernels) = {camera};
+const sf_camera_kernels SF_AT_ISA(sf_camera_kernels) = {camera};

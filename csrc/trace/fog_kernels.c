@@ -12,7 +12,7 @@
  * the probability exp(-extinction t), the transmittance, and so needs no weight. A ray that was not
  * traced has the distance -1, and its coordinate may be no number in [0, 1): it stays a miss. */
 static void drift(sf_batch *b, const sf_scene *scene, uint32_t count) {
-    float (*u)[SF_PATHS] = sf_coordinates_by_ray(b, count, 1);
+    float (*u)[SF_PATHS] = sf_sample_dimensions_by_ray(b, count, 1);
     float mean = 1 / (scene->fog.scattering + scene->fog.absorption);
     uint32_t fog = scene->mesh_table.miss + 1;
     for (uint32_t i = 0; i < sf_whole_packets(count); ++i) {
@@ -35,4 +35,4 @@ static void dim(sf_batch *b, const sf_scene *scene, uint32_t count) {
     }
 }
 
-const sf_fog_kernels SF_AT_LEVEL(sf_fog_kernels) = {drift, dim};
+const sf_fog_kernels SF_AT_ISA(sf_fog_kernels) = {drift, dim};

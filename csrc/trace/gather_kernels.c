@@ -76,4 +76,4 @@ static void gather_by_sign(sf_batch *b) {
     }
 }
 
-const sf_gather_kernels SF_AT_LEVEL(sf_gather_kernels) = {gather_statistics, gather_by_sign};
+const sf_gather_kernels SF_AT_ISA(sf_gather_kernels) = {gather_statistics, gather_by_sign};

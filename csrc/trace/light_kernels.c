@@ -73,7 +73,7 @@ static inline void give_piece(light_lanes *lights, uint32_t l, const float piece
 static void light(sf_batch *b, const sf_scene *scene, uint32_t count, bool weigh) {
     const sf_light_table *lights = &scene->lights;
     bool several = lights->count > 1;
-    float (*u)[SF_PATHS] = sf_coordinates_by_ray(b, count, several ? 3 : 2);
+    float (*u)[SF_PATHS] = sf_sample_dimensions_by_ray(b, count, several ? 3 : 2);
     light_lanes lanes;
     for (uint32_t l = 0; l < SF_LANES; ++l) give_piece(&lanes, l, lights->pieces[0]);
     for (uint32_t first = 0; first < count; first += SF_LANES) {
@@ -102,4 +102,4 @@ static void add_light(sf_batch *b, uint32_t count) {
     }
 }
 
-const sf_light_kernels SF_AT_LEVEL(sf_light_kernels) = {light, add_light};
+const sf_light_kernels SF_AT_ISA(sf_light_kernels) = {light, add_light};

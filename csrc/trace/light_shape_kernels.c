@@ -76,7 +76,7 @@ static void choose_by_tree(shape_lanes *SF_RESTRICT lanes, const sf_batch *b, co
         float own = u[first + l < count ? first + l : first], within = own / share;
         rest[l] = within < 0x1.fffffep-1f ? within : 0x1.fffffep-1f;
     }
-    SF_AT_LEVEL(sf_light_tree_kernels).draw(lights->tree, &view, rest, piece, chance);
+    SF_AT_ISA(sf_light_tree_kernels).draw(lights->tree, &view, rest, piece, chance);
     EACH_LANE {
         float own = u[first + l < count ? first + l : first];
         bool by_tree = own < share;
@@ -120,9 +120,9 @@ static inline float lift_of(const float end[3], float distance, float least) {
 static inline void place_flat(float kind, float s, float t, float *alpha, float *beta) {
     float root = sqrtf(s), disk[2];
     sf_disk_concentric_sample(s, t, disk);
-    bool triangle = kind == (float)SF_LIGHT_IS_TRIANGLE, round = kind == (float)SF_LIGHT_IS_DISK;
-    *alpha = triangle ? root * t : round ? disk[0] : s;
-    *beta = triangle ? 1 - root : round ? disk[1] : t;
+    bool triangle = kind == (float)SF_LIGHT_IS_TRIANGLE, is_disk = kind == (float)SF_LIGHT_IS_DISK;
+    *alpha = triangle ? root * t : is_disk ? disk[0] : s;
+    *beta = triangle ? 1 - root : is_disk ? disk[1] : t;
 }
 
 static void draw_by_area(const shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT d) {
@@ -408,7 +408,7 @@ static void take_packet(shape_lanes *SF_RESTRICT lanes, drawn_lanes *SF_RESTRICT
 static void connect_all(sf_batch *b, const sf_scene *scene, uint32_t count, connection how) {
     const sf_light_table *lights = &scene->lights;
     bool several = lights->count > 1;
-    float (*u)[SF_PATHS] = sf_coordinates_by_ray(b, count, several ? 3 : 2);
+    float (*u)[SF_PATHS] = sf_sample_dimensions_by_ray(b, count, several ? 3 : 2);
     shape_lanes lanes;
     drawn_lanes drawn;
     memset(&drawn, 0, sizeof drawn);
@@ -498,7 +498,7 @@ static void weigh_by_tree(shape_lanes *SF_RESTRICT lanes, const sf_batch *b, con
         piece[l] = 0;
         if (emitters >> l & 1u) piece[l] = lights->of_primitive[lights->first_of_mesh[b->mesh[i]] + b->primitive[i]];
     }
-    SF_AT_LEVEL(sf_light_tree_kernels).weigh(lights->tree, &view, piece, chance);
+    SF_AT_ISA(sf_light_tree_kernels).weigh(lights->tree, &view, piece, chance);
     EACH_LANE lanes->field[SF_LIGHT_PDF][l] *= chance[l];
 }
 
@@ -550,4 +550,4 @@ static void found(sf_batch *b, const sf_scene *scene, uint32_t count) {
             for (int c = 0; c < 3; ++c) b->emission[c][i] = b->throughput[c][i] * scene->background[c];
 }
 
-const sf_light_shape_kernels SF_AT_LEVEL(sf_light_shape_kernels) = {light, bare_light, found};
+const sf_light_shape_kernels SF_AT_ISA(sf_light_shape_kernels) = {light, bare_light, found};

@@ -135,4 +135,4 @@ static void weigh(const sf_light_tree *tree, const sf_tree_view *view, const uin
     }
 }
 
-const sf_light_tree_kernels SF_AT_LEVEL(sf_light_tree_kernels) = {draw, weigh};
+const sf_light_tree_kernels SF_AT_ISA(sf_light_tree_kernels) = {draw, weigh};

@@ -26,10 +26,10 @@ static void keep(sf_batch *b, const sf_scene *scene, uint32_t count) {
         b->lift[k] = (lift > least ? lift : least) * (1 + scene->back);
         if (b->mesh[i] == scene->mesh_table.miss + 1) b->lift[k] = 0; /* the fog has no surface to leave */
     }
-    if (!scene->rounds) return;
+    if (!scene->quadrics) return;
     for (uint32_t k = 0; k < count; ++k) {
-        const sf_round *round = scene->rounds + b->surface[k];
-        if (round->kind == SF_ROUND_SPHERE) b->lift[k] = sf_lift_on_sphere(round, b->lift[k]) * (1 + scene->back);
+        const sf_quadric *quadric = scene->quadrics + b->surface[k];
+        if (quadric->kind == SF_QUADRIC_SPHERE) b->lift[k] = sf_lift_on_sphere(quadric, b->lift[k]) * (1 + scene->back);
     }
 }
 
@@ -270,7 +270,7 @@ static inline void fog(sf_batch *b, const sf_scene *scene, uint32_t i, float s, 
 }
 
 static void scatter(sf_batch *b, const sf_scene *scene, uint32_t count) {
-    float (*u)[SF_PATHS] = sf_coordinates_by_ray(b, count, 3);
+    float (*u)[SF_PATHS] = sf_sample_dimensions_by_ray(b, count, 3);
     FOR_EACH(b, SF_SCATTER_DIFFUSE, i) b->alive[i] = 1;
     FOR_EACH(b, SF_SCATTER_MIRROR, i) mirror(b, i);
     FOR_EACH(b, SF_SCATTER_SMOOTH_CONDUCTOR, i) smooth_conductor(b, scene, i);
@@ -285,4 +285,4 @@ static void end_diffuse(sf_batch *b, uint32_t count) {
     FOR_EACH(b, SF_SCATTER_DIFFUSE, i) b->alive[i] = 0;
 }
 
-const sf_material_kernels SF_AT_LEVEL(sf_material_kernels) = {keep, compact, sort, respond, end_diffuse, scatter};
+const sf_material_kernels SF_AT_ISA(sf_material_kernels) = {keep, compact, sort, respond, end_diffuse, scatter};

@@ -124,4 +124,4 @@ static uint32_t sort_surface_rays(sf_batch *b, const sf_scene *scene, uint32_t c
     return count;
 }
 
-const sf_order_kernels SF_AT_LEVEL(sf_order_kernels) = {list_alive, compact, sort_shadow_rays, sort_surface_rays};
+const sf_order_kernels SF_AT_ISA(sf_order_kernels) = {list_alive, compact, sort_shadow_rays, sort_surface_rays};

@@ -7,10 +7,10 @@
 
 #include "trace/rays.h"
 
-static inline void face_sphere(sf_batch *b, const sf_round *round, uint32_t i) {
+static inline void face_sphere(sf_batch *b, const sf_quadric *quadric, uint32_t i) {
     float q[3], square = 0;
     for (int c = 0; c < 3; ++c) {
-        q[c] = (b->origin[c][i] - round->centre[c]) + b->distance[i] * b->direction[c][i];
+        q[c] = (b->origin[c][i] - quadric->centre[c]) + b->distance[i] * b->direction[c][i];
         square += q[c] * q[c];
     }
     float scale = square > 0 ? 1 / sqrtf(square) : 0.0f;
@@ -19,11 +19,11 @@ static inline void face_sphere(sf_batch *b, const sf_round *round, uint32_t i) {
 
 static void face(sf_batch *b, const sf_scene *scene, uint32_t count) {
     for (uint32_t i = 0; i < count; ++i) {
-        const sf_round *round = scene->rounds + b->mesh[i];
-        if (round->kind == SF_ROUND_SPHERE)
-            face_sphere(b, round, i);
-        else if (round->kind == SF_ROUND_DISK)
-            for (int c = 0; c < 3; ++c) b->hit_normal[c][i] = round->normal[c];
+        const sf_quadric *quadric = scene->quadrics + b->mesh[i];
+        if (quadric->kind == SF_QUADRIC_SPHERE)
+            face_sphere(b, quadric, i);
+        else if (quadric->kind == SF_QUADRIC_DISK)
+            for (int c = 0; c < 3; ++c) b->hit_normal[c][i] = quadric->normal[c];
     }
 }
 
@@ -31,15 +31,15 @@ static void face(sf_batch *b, const sf_scene *scene, uint32_t count) {
  * middle and radius. */
 static void settle(sf_batch *b, const sf_scene *scene, uint32_t count) {
     for (uint32_t i = 0; i < count; ++i) {
-        const sf_round *round = scene->rounds + b->mesh[i];
-        if (round->kind != SF_ROUND_SPHERE) continue;
-        const float *centre = round->centre;
+        const sf_quadric *quadric = scene->quadrics + b->mesh[i];
+        if (quadric->kind != SF_QUADRIC_SPHERE) continue;
+        const float *centre = quadric->centre;
         float lift =
-            sf_lift_on_sphere(round, sf_lift(b->origin[0][i], b->origin[1][i], b->origin[2][i], b->distance[i]));
+            sf_lift_on_sphere(quadric, sf_lift(b->origin[0][i], b->origin[1][i], b->origin[2][i], b->distance[i]));
         for (int c = 0; c < 3; ++c)
-            b->point[c][i] = (centre[c] + round->radius * b->hit_normal[c][i]) +
+            b->point[c][i] = (centre[c] + quadric->radius * b->hit_normal[c][i]) +
                              lift * (b->normal[c][i] - scene->back * b->direction[c][i]);
     }
 }
 
-const sf_round_kernels SF_AT_LEVEL(sf_round_kernels) = {face, settle};
+const sf_quadric_kernels SF_AT_ISA(sf_quadric_kernels) = {face, settle};

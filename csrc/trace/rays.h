@@ -18,14 +18,14 @@ static inline float sf_lift(float origin_x, float origin_y, float origin_z, floa
     return 0x1p-18f * ((largest > az ? largest : az) + distance);
 }
 /* On a sphere its middle and radius count too. */
-static inline float sf_lift_on_sphere(const sf_round *round, float lift) {
-    float ax = fabsf(round->centre[0]), ay = fabsf(round->centre[1]), az = fabsf(round->centre[2]);
-    float largest = ax > ay ? ax : ay, own = 0x1p-18f * ((largest > az ? largest : az) + round->radius);
+static inline float sf_lift_on_sphere(const sf_quadric *quadric, float lift) {
+    float ax = fabsf(quadric->centre[0]), ay = fabsf(quadric->centre[1]), az = fabsf(quadric->centre[2]);
+    float largest = ax > ay ? ax : ay, own = 0x1p-18f * ((largest > az ? largest : az) + quadric->radius);
     return own > lift ? own : lift;
 }
 
 /* The coordinates of the rays' paths. */
-static inline float (*sf_coordinates_by_ray(sf_batch *b, uint32_t count, int coordinates)) [SF_PATHS] {
+static inline float (*sf_sample_dimensions_by_ray(sf_batch *b, uint32_t count, int coordinates)) [SF_PATHS] {
     if (b->in_place) return b->coordinate;
     for (int c = 0; c < coordinates; ++c)
         for (uint32_t i = 0; i < count; ++i) b->coordinate_by_ray[c][i] = b->coordinate[c][b->path[i]];

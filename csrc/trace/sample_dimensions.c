@@ -46,7 +46,7 @@ static uint32_t set_of(const sf_plan *plan, uint32_t bounce) {
 }
 
 /* Gives each group of the plan its place. */
-static void assign_sources(sf_coordinates *coordinates, const sf_plan *plan) {
+static void assign_sources(sf_sample_dimensions *coordinates, const sf_plan *plan) {
     uint32_t taken[SF_CAMERA_SET + 1] = {0};
     for (int turn = 0; turn <= 3; ++turn)
         for (uint32_t g = 0; g < plan->dimension_group_count; ++g) {
@@ -61,7 +61,7 @@ static void assign_sources(sf_coordinates *coordinates, const sf_plan *plan) {
 }
 
 /* The path's dimensions are those of the groups, one after another, and then roulette's. */
-static void assign_primes(sf_coordinates *coordinates, const sf_plan *plan) {
+static void assign_primes(sf_sample_dimensions *coordinates, const sf_plan *plan) {
     uint32_t dimension = 0, prime = sf_next_prime(0);
     for (uint32_t g = 0; g < plan->dimension_group_count; ++g) {
         sf_coordinate_source *source = coordinates->sources + g;
@@ -74,7 +74,7 @@ static void assign_primes(sf_coordinates *coordinates, const sf_plan *plan) {
         coordinates->roulette_primes[bounce] = prime;
 }
 
-static sf_status choose_cells(sf_coordinates *coordinates, uint32_t spp, sf_error *error) {
+static sf_status choose_cells(sf_sample_dimensions *coordinates, uint32_t spp, sf_error *error) {
     bool uniform = coordinates->pattern == SF_PATTERN_UNIFORM;
     if (!uniform && coordinates->pattern != SF_PATTERN_JITTERED) return SF_STATUS_OK;
     if (uniform && spp == 0)
@@ -96,8 +96,8 @@ static sf_status refuse_pattern(sf_pattern pattern, sf_error *error) {
                    name ? name : "?", names);
 }
 
-sf_status sf_coordinates_init(sf_coordinates *coordinates, sf_pattern pattern, const sf_plan *plan, uint32_t spp,
-                              uint64_t seed, sf_error *error) {
+sf_status sf_sample_dimensions_init(sf_sample_dimensions *coordinates, sf_pattern pattern, const sf_plan *plan,
+                                    uint32_t spp, uint64_t seed, sf_error *error) {
     if (!sf_render_takes_pattern(pattern)) return refuse_pattern(pattern, error);
     memset(coordinates, 0, sizeof *coordinates);
     coordinates->pattern = pattern;

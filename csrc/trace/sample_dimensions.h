@@ -9,8 +9,8 @@
  * the good first dimensions of the pattern. Against sets of two dimensions and the first vertex's of
  * four, relMSE at 256 samples is 0.55 on defocus and 0.89 on cornell. With the camera in the vertices'
  * set, some counts are bad for some scenes: 1.6 times the error at 128 samples under many lamps. */
-#ifndef SUNFLECK_COORDINATES_H
-#define SUNFLECK_COORDINATES_H
+#ifndef SUNFLECK_SAMPLE_DIMENSIONS_H
+#define SUNFLECK_SAMPLE_DIMENSIONS_H
 
 #include "film/block.h"
 #include "sunfleck/points.h"
@@ -32,7 +32,7 @@ typedef struct sf_coordinate_source {
 #define SF_SET_ROULETTE 21
 #define SF_SET_DIMENSIONS (SF_SET_ROULETTE + SF_SET_BOUNCES)
 
-typedef struct sf_coordinates {
+typedef struct sf_sample_dimensions {
     sf_pattern pattern;
     uint32_t sides[2]; /* uniform, jittered: the grid that `cells` samples fill, and how many */
     uint32_t cells;
@@ -41,15 +41,15 @@ typedef struct sf_coordinates {
     uint32_t roulette_primes[SF_MAX_BOUNCES + 1];     /* halton: by bounce */
     /* Sobol's direction numbers, bits reversed, summed over each byte of the index. */
     uint32_t sobol[SF_SET_DIMENSIONS][4][256];
-} sf_coordinates;
+} sf_sample_dimensions;
 
 /* Prepares the coordinates of a plan. `spp` is the fixed count, 0 where the count is open:
  * jittered then fills one 4 x 4 grid after another, and uniform is refused. */
-sf_status sf_coordinates_init(sf_coordinates *coordinates, sf_pattern pattern, const sf_plan *plan, uint32_t spp,
-                              uint64_t seed, sf_error *error);
+sf_status sf_sample_dimensions_init(sf_sample_dimensions *coordinates, sf_pattern pattern, const sf_plan *plan,
+                                    uint32_t spp, uint64_t seed, sf_error *error);
 
 /* The coordinate of Russian roulette at the vertex `bounce`, which comes after the plan's own. */
-static inline sf_coordinate_source sf_roulette_source(const sf_coordinates *coordinates, const sf_plan *plan,
+static inline sf_coordinate_source sf_roulette_source(const sf_sample_dimensions *coordinates, const sf_plan *plan,
                                                       uint32_t bounce) {
     return (sf_coordinate_source){.set = (bounce - 1) / SF_SET_BOUNCES,
                                   .dimension = SF_SET_ROULETTE + (bounce - 1) % SF_SET_BOUNCES,

@@ -180,4 +180,4 @@ static void fill(const sf_coordinate_source *source, const sf_block *blocks, uin
     }
 }
 
-const sf_coordinates_halton_kernels SF_AT_LEVEL(sf_coordinates_halton_kernels) = {fill};
+const sf_sample_dimensions_halton_kernels SF_AT_ISA(sf_sample_dimensions_halton_kernels) = {fill};

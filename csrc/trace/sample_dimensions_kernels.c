@@ -6,8 +6,8 @@
 #include <stdbool.h>
 
 #include "base/platform.h"
-#include "trace/sample_dimensions_halton_kernels.h"
 #include "trace/lanes.h"
+#include "trace/sample_dimensions_halton_kernels.h"
 
 /* The key of a set of dimensions in one block, and from it of each dimension. */
 static uint64_t set_key(uint64_t block_key, uint32_t set) {
@@ -72,9 +72,9 @@ static inline void fill_in_step(const uint32_t table[4][256], uint32_t base, con
  * fewer than 16. The set's order keeps the 16 samples of a block together: they differ in the last four
  * bits of their indices, and the rest of an index hangs on the rest of it alone. What is of the
  * blocks is made for the whole batch, and then what is of the lanes, so that no packet waits for it. */
-static inline void fill_sobol(uint32_t width, const sf_coordinates *coordinates, const sf_coordinate_source *source,
-                              const sf_block *blocks, uint32_t count, uint32_t first_sample,
-                              float (*SF_RESTRICT out)[SF_PATHS]) {
+static inline void fill_sobol(uint32_t width, const sf_sample_dimensions *coordinates,
+                              const sf_coordinate_source *source, const sf_block *blocks, uint32_t count,
+                              uint32_t first_sample, float (*SF_RESTRICT out)[SF_PATHS]) {
     uint64_t keys[SF_BLOCKS];
     uint32_t bases[SF_BLOCKS], seeds[SF_BLOCKS], starts[SF_BLOCKS], indices[SF_BLOCKS], differ = source->set;
     SF_ALIGNED(uint32_t) reversed[SF_PATHS];
@@ -156,8 +156,8 @@ static uint32_t permute(uint32_t index, uint32_t length, uint64_t key) {
 /* The cell of the grid and the place in it: jittered within the cell, or at its centre. Every
  * `cells` samples fill the grid once, in an order of their own for each set of dimensions, so
  * that two sets never run in step; uniform's orders and points are the same for every pixel. */
-static void fill_cells(const sf_coordinates *coordinates, const sf_coordinate_source *source, const sf_block *blocks,
-                       uint32_t block_count, float (*SF_RESTRICT out)[SF_PATHS]) {
+static void fill_cells(const sf_sample_dimensions *coordinates, const sf_coordinate_source *source,
+                       const sf_block *blocks, uint32_t block_count, float (*SF_RESTRICT out)[SF_PATHS]) {
     bool jittered = coordinates->pattern == SF_PATTERN_JITTERED;
     uint32_t columns = source->count == 2 ? coordinates->sides[0] : coordinates->cells;
     for (uint32_t b = 0; b < block_count; ++b) {
@@ -177,22 +177,22 @@ static void fill_cells(const sf_coordinates *coordinates, const sf_coordinate_so
     }
 }
 
-static void fill(const sf_coordinates *coordinates, const sf_coordinate_source *source, const sf_block *blocks,
+static void fill(const sf_sample_dimensions *coordinates, const sf_coordinate_source *source, const sf_block *blocks,
                  uint32_t block_count, float (*out)[SF_PATHS]) {
     switch (coordinates->pattern) {
         case SF_PATTERN_UNIFORM:
         case SF_PATTERN_JITTERED: fill_cells(coordinates, source, blocks, block_count, out); break;
         case SF_PATTERN_HALTON:
-            SF_AT_LEVEL(sf_coordinates_halton_kernels).fill(source, blocks, block_count, out);
+            SF_AT_ISA(sf_sample_dimensions_halton_kernels).fill(source, blocks, block_count, out);
             break;
         case SF_PATTERN_SOBOL: fill_sobol(SF_LANES, coordinates, source, blocks, block_count, 0, out); break;
         default: fill_random(source, blocks, block_count, out); break;
     }
 }
 
-static void fill_narrow(const sf_coordinates *coordinates, const sf_coordinate_source *source, const sf_block *blocks,
-                        uint32_t block_count, uint32_t width, uint32_t first_sample, float (*scratch)[SF_PATHS],
-                        float (*out)[SF_PATHS]) {
+static void fill_narrow(const sf_sample_dimensions *coordinates, const sf_coordinate_source *source,
+                        const sf_block *blocks, uint32_t block_count, uint32_t width, uint32_t first_sample,
+                        float (*scratch)[SF_PATHS], float (*out)[SF_PATHS]) {
     if (coordinates->pattern == SF_PATTERN_SOBOL) {
         SF_AT_WIDTH(width, fill_sobol, coordinates, source, blocks, block_count, first_sample, out)
         return;
@@ -204,4 +204,4 @@ static void fill_narrow(const sf_coordinates *coordinates, const sf_coordinate_s
             for (uint32_t l = 0; l < width; ++l) out[d][b * width + l] = scratch[d][b * SF_LANES + first_sample + l];
 }
 
-const sf_coordinates_kernels SF_AT_LEVEL(sf_coordinates_kernels) = {fill, fill_narrow};
+const sf_sample_dimensions_kernels SF_AT_ISA(sf_sample_dimensions_kernels) = {fill, fill_narrow};

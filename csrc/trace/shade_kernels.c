@@ -165,7 +165,7 @@ static void later_vertex(sf_batch *b, const sf_scene *scene, uint32_t count) {
 /* Arvo & Kirk 1990, "Particle Transport and Image Synthesis". The least probability, 1/32, bounds
  * what the noise of a path can grow by. */
 static void roulette(sf_batch *b, uint32_t count) {
-    float (*u)[SF_PATHS] = sf_coordinates_by_ray(b, count, 1);
+    float (*u)[SF_PATHS] = sf_sample_dimensions_by_ray(b, count, 1);
     for (uint32_t i = 0; i < sf_whole_packets(count); ++i) {
         float red = b->throughput[0][i], green = b->throughput[1][i], blue = b->throughput[2][i];
         float q = red > green ? red : green;
@@ -180,7 +180,7 @@ static void roulette(sf_batch *b, uint32_t count) {
 /* ---- surface ---- */
 
 static void surface(sf_batch *b, uint32_t count) {
-    float (*u)[SF_PATHS] = sf_coordinates_by_ray(b, count, 2);
+    float (*u)[SF_PATHS] = sf_sample_dimensions_by_ray(b, count, 2);
     for (uint32_t i = 0; i < sf_whole_packets(count); ++i) {
         float normal[3] = {b->normal[0][i], b->normal[1][i], b->normal[2][i]};
         float local[3], tangent[3], bitangent[3], world[3];
@@ -195,5 +195,5 @@ static void surface(sf_batch *b, uint32_t count) {
     }
 }
 
-const sf_shade_kernels SF_AT_LEVEL(sf_shade_kernels) = {first_radiance, later_radiance, first_vertex,
-                                                        later_vertex,   roulette,       surface};
+const sf_shade_kernels SF_AT_ISA(sf_shade_kernels) = {first_radiance, later_radiance, first_vertex,
+                                                      later_vertex,   roulette,       surface};

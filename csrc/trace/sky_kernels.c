@@ -63,4 +63,4 @@ static void later(sf_batch *b, const sf_scene *scene, uint32_t count) {
     }
 }
 
-const sf_sky_kernels SF_AT_LEVEL(sf_sky_kernels) = {first, later};
+const sf_sky_kernels SF_AT_ISA(sf_sky_kernels) = {first, later};

@@ -151,4 +151,4 @@ static void shadow(sf_batch *b, const sf_scene *scene, float (*from)[SF_PATHS], 
     }
 }
 
-const sf_trace_kernels SF_AT_LEVEL(sf_trace_kernels) = {nearest, shadow};
+const sf_trace_kernels SF_AT_ISA(sf_trace_kernels) = {nearest, shadow};

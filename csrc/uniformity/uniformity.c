@@ -10,8 +10,8 @@
 
 #include "base/error.h"
 #include "base/name.h"
+#include "base/parallel.h"
 #include "base/platform.h"
-#include "base/share.h"
 #include "uniformity/uniformity_parts.h"
 
 /* Rows of points whose pairs are one item of work. */
@@ -156,7 +156,7 @@ static sf_status sum_pairs(sf_discrepancy_kind kind, const sf_columns *points, u
     size_t tiles = (points->count + TILE - 1) / TILE;
     pairs_job job = {points, sf_uniformity_kernels_at(sf_isa_active())->pair_sum[kind], malloc(tiles * sizeof(double))};
     if (!job.sums) return sf_fail_memory(error, "the sums of pairs", tiles * sizeof(double));
-    sf_share_items(sf_share_threads(threads, tiles), tiles, sum_tile, &job);
+    sf_parallel_for(sf_parallel_threads(threads, tiles), tiles, sum_tile, &job);
     *sum = 0.0;
     for (size_t i = 0; i < tiles; ++i) *sum += job.sums[i];
     free(job.sums);
@@ -211,7 +211,7 @@ typedef struct distance_job {
     sf_columns points; /* in rising order of the first coordinate */
     double (*nearest)(const sf_columns *, size_t, size_t, size_t);
     int toroidal;
-    double least[SF_SHARE_MAX_THREADS]; /* squared, that each worker has seen */
+    double least[SF_PARALLEL_MAX_THREADS]; /* squared, that each worker has seen */
 } distance_job;
 
 /* The end of the run, from `begin` to at most `end`, of points whose first coordinates are less than
@@ -263,9 +263,9 @@ sf_status sf_minimum_distance(const double *points, size_t count, uint32_t dims,
     status = sf_columns_init(&job.points, points, count, dims, order, error);
     free(order);
     if (status != SF_STATUS_OK) return status;
-    unsigned used = sf_share_threads(threads, tiles);
+    unsigned used = sf_parallel_threads(threads, tiles);
     for (unsigned i = 0; i < used; ++i) job.least[i] = INFINITY;
-    sf_share_items(used, tiles, search_tile, &job);
+    sf_parallel_for(used, tiles, search_tile, &job);
     double least = INFINITY;
     for (unsigned i = 0; i < used; ++i) least = job.least[i] < least ? job.least[i] : least;
     sf_columns_release(&job.points);

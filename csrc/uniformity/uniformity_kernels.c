@@ -109,7 +109,7 @@ static void append_bits(size_t count, const uint32_t *SF_RESTRICT digits, unsign
     for (size_t i = 0; i < count; ++i) cells[i] = cells[i] << bits | digits[i] >> shift;
 }
 
-const sf_uniformity_kernels SF_AT_LEVEL(sf_uniformity_kernels) = {
+const sf_uniformity_kernels SF_AT_ISA(sf_uniformity_kernels) = {
     {centered_sum, wraparound_sum, mixture_sum, l2_star_sum},
     {nearest, nearest_toroidal},
     extremes,

@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/platform.h"
-#include "base/share.h"
 #include "uniformity/uniformity_parts.h"
 
 enum { BLOCK = 1024, MAX_LEVELS = 33 };
@@ -120,7 +120,7 @@ static sf_status climb(net *n, uint32_t effort, uint32_t *t, sf_error *error) {
                            " allows",
                            n->levels - n->level + 1, level_steps, most, effort);
         n->shares = level_steps < STEPS_OF_A_THREAD ? 1 : n->threads;
-        sf_share_items(n->shares, n->shares, test_share, n);
+        sf_parallel_for(n->shares, n->shares, test_share, n);
         if (sf_atomic_load(&n->failed)) break;
     }
     *t = n->levels - n->level + 1;
@@ -148,7 +148,7 @@ sf_status sf_net_t_value(const double *points, size_t count, uint32_t dims, uint
     if (status != SF_STATUS_OK) return status;
     for (uint32_t power = base; (power & 1) == 0; power >>= 1) ++n.bits;
     if (1u << n.bits != base) n.bits = 0;
-    n.threads = sf_share_threads(threads, SF_SHARE_MAX_THREADS);
+    n.threads = sf_parallel_threads(threads, SF_PARALLEL_MAX_THREADS);
     status = allocate(&n, points, error);
     if (status != SF_STATUS_OK) return status;
     status = climb(&n, effort, t, error);

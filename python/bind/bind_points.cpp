@@ -30,15 +30,15 @@ sf_scramble find_scramble(const std::string &name) {
     return scramble;
 }
 
-// The process's crew, made when threads are first asked for and never destroyed: its threads sleep
-// until the process ends. After a fork they are the parent's, and the child makes a crew anew.
-sf_crew *shared_crew() {
-    static std::atomic<sf_crew *> crew{nullptr};
-    static const int forks = pthread_atfork(nullptr, nullptr, [] { crew = nullptr; });
-    sf_crew *now = crew, *fresh;
-    if (now || forks != 0 || sf_crew_create(&fresh, nullptr) != SF_STATUS_OK) return now;
-    if (crew.compare_exchange_strong(now, fresh)) return fresh;
-    sf_crew_destroy(fresh);
+// The process's team, made when threads are first asked for and never destroyed: its threads sleep
+// until the process ends. After a fork they are the parent's, and the child makes a team anew.
+sf_thread_team *shared_team() {
+    static std::atomic<sf_thread_team *> team{nullptr};
+    static const int forks = pthread_atfork(nullptr, nullptr, [] { team = nullptr; });
+    sf_thread_team *now = team, *fresh;
+    if (now || forks != 0 || sf_thread_team_create(&fresh, nullptr) != SF_STATUS_OK) return now;
+    if (team.compare_exchange_strong(now, fresh)) return fresh;
+    sf_thread_team_destroy(fresh);
     return now;
 }
 
@@ -52,7 +52,7 @@ struct prepared {
     bool serves(const sf_points_options &o) const {
         return options.pattern == o.pattern && options.scramble == o.scramble && options.dims == o.dims &&
                options.pad == o.pad && options.seed == o.seed && options.total == o.total &&
-               options.threads == o.threads && options.crew == o.crew;
+               options.threads == o.threads && options.team == o.team;
     }
 };
 
@@ -110,7 +110,7 @@ void fill(nb::ndarray<T, nb::ndim<2>, nb::c_contig, nb::device::cpu> out, const 
     options.first = first;
     options.total = total;
     options.threads = threads;
-    options.crew = threads == 1 ? nullptr : shared_crew();
+    options.team = threads == 1 ? nullptr : shared_team();
     if (out.shape(1) != dims) throw nb::value_error("out must have a column for each dimension");
     call([&](sf_error *error) { return fill_with_kept<T, Fill, FillFrom>(options, out.shape(0), out.data(), error); });
 }

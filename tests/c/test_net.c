@@ -302,12 +302,12 @@ static uint64_t fill_digest(const sf_points_options *o, size_t count, int type) 
     return sum;
 }
 
-static void test_levels_threads_and_crews_change_no_bit(void **state) {
+static void test_levels_threads_and_teams_change_no_bit(void **state) {
     (void)state;
     static const char *const levels[] = {"baseline", "avx2", "avx512"};
     enum { COUNT = 12345 };
-    sf_crew *crew;
-    assert_int_equal(sf_crew_create(&crew, NULL), SF_STATUS_OK);
+    sf_thread_team *team;
+    assert_int_equal(sf_thread_team_create(&team, NULL), SF_STATUS_OK);
     for (int net = 0; net < NETS; ++net)
         for (int s = 0; s < SCRAMBLES; ++s)
             for (int type = 0; type < 3; ++type)
@@ -321,27 +321,27 @@ static void test_levels_threads_and_crews_change_no_bit(void **state) {
                         setenv("SUNFLECK_ISA", levels[level], 1);
                         o.threads = 1 + (uint32_t)level;
                         assert_true(fill_digest(&o, COUNT, type) == expected);
-                        o.crew = crew;
+                        o.team = team;
                         assert_true(fill_digest(&o, COUNT, type) == expected);
-                        o.crew = NULL;
+                        o.team = NULL;
                     }
                 }
     unsetenv("SUNFLECK_ISA");
-    sf_crew_destroy(crew);
+    sf_thread_team_destroy(team);
 }
 
 typedef struct sharer {
-    sf_crew *crew;
+    sf_thread_team *team;
     uint64_t expected;
     int wrong;
 } sharer;
 
-/* Fills again and again on two threads of the crew, now at once and now after it fell asleep. */
-static void *share_crew(void *argument) {
+/* Fills again and again on two threads of the team, now at once and now after it fell asleep. */
+static void *share_team(void *argument) {
     sharer *s = argument;
     sf_points_options o = options_for(SF_PATTERN_SOBOL, SF_SCRAMBLE_OWEN, 16, 4);
     static const struct timespec nap = {0, 200000};
-    o.crew = s->crew;
+    o.team = s->team;
     o.threads = 3;
     for (int i = 0; i < 60; ++i) {
         s->wrong += fill_digest(&o, 4096, 0) != s->expected;
@@ -350,19 +350,19 @@ static void *share_crew(void *argument) {
     return NULL;
 }
 
-static void test_a_crew_may_be_shared(void **state) {
+static void test_a_team_may_be_shared(void **state) {
     (void)state;
     sf_points_options o = options_for(SF_PATTERN_SOBOL, SF_SCRAMBLE_OWEN, 16, 4);
     sharer s[2] = {{NULL, fill_digest(&o, 4096, 0), 0}};
-    assert_int_equal(sf_crew_create(&s[0].crew, NULL), SF_STATUS_OK);
+    assert_int_equal(sf_thread_team_create(&s[0].team, NULL), SF_STATUS_OK);
     s[1] = s[0];
     pthread_t other;
-    assert_int_equal(pthread_create(&other, NULL, share_crew, s + 1), 0);
-    share_crew(s);
+    assert_int_equal(pthread_create(&other, NULL, share_team, s + 1), 0);
+    share_team(s);
     pthread_join(other, NULL);
     assert_int_equal(s[0].wrong + s[1].wrong, 0);
-    sf_crew_destroy(s[0].crew);
-    sf_crew_destroy(NULL);
+    sf_thread_team_destroy(s[0].team);
+    sf_thread_team_destroy(NULL);
 }
 
 static void test_an_array_written_past_the_caches_has_the_same_bits(void **state) {
@@ -442,8 +442,8 @@ int main(void) {
         cmocka_unit_test(test_fills_are_the_stateless_samples),
         cmocka_unit_test(test_padded_fills_are_the_stateless_samples),
         cmocka_unit_test(test_the_first_padded_set_is_the_net),
-        cmocka_unit_test(test_levels_threads_and_crews_change_no_bit),
-        cmocka_unit_test(test_a_crew_may_be_shared),
+        cmocka_unit_test(test_levels_threads_and_teams_change_no_bit),
+        cmocka_unit_test(test_a_team_may_be_shared),
         cmocka_unit_test(test_an_array_written_past_the_caches_has_the_same_bits),
         cmocka_unit_test(test_a_set_fills_any_part),
         cmocka_unit_test(test_bad_options_are_named),

@@ -687,24 +687,24 @@ static void test_scene_that_is_not_committed_is_refused(void **state) {
 static void test_pages_of_the_last_film_come_back_as_zeros(void **state) {
     (void)state;
     size_t size = 5 << 20;
-    unsigned char *first = sf_pages_take(size), *other, *again;
+    unsigned char *first = sf_page_cache_take(size), *other, *again;
     memset(first, 0xa5, size);
-    sf_pages_give(first, size);
-    other = sf_pages_take(2 * size); /* of another size: not these */
-    again = sf_pages_take(size);
+    sf_page_cache_give(first, size);
+    other = sf_page_cache_take(2 * size); /* of another size: not these */
+    again = sf_page_cache_take(size);
     assert_ptr_equal(again, first);
     assert_ptr_not_equal(other, first);
     for (size_t i = 0; i < size; ++i)
         if (again[i] || other[i]) fail_msg("byte %zu is not 0", i);
-    sf_pages_give(other, 2 * size);
-    sf_pages_give(again, size);
-    other = sf_pages_take(2 * size); /* the last alone is kept */
+    sf_page_cache_give(other, 2 * size);
+    sf_page_cache_give(again, size);
+    other = sf_page_cache_take(2 * size); /* the last alone is kept */
     for (size_t i = 0; i < 2 * size; ++i) assert_true(other[i] == 0);
-    sf_pages_give(other, 2 * size);
-    other = sf_pages_take(SF_PAGES_KEPT + 1);
-    other[SF_PAGES_KEPT] = 1;
-    sf_pages_give(other, SF_PAGES_KEPT + 1); /* too large to be kept */
-    sf_pages_give(NULL, size);
+    sf_page_cache_give(other, 2 * size);
+    other = sf_page_cache_take(SF_PAGE_CACHE_KEPT + 1);
+    other[SF_PAGE_CACHE_KEPT] = 1;
+    sf_page_cache_give(other, SF_PAGE_CACHE_KEPT + 1); /* too large to be kept */
+    sf_page_cache_give(NULL, size);
 }
 
 int main(void) {

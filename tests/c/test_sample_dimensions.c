@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /* coordinates: the renderer's blocks of Halton's points are the stateless ones, bit for bit, at
- * every instruction-set level; blocks that share packets keep their samples. */
+ * every instruction set; blocks that share packets keep their samples. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -17,7 +17,7 @@
 
 enum { GROUPS = 5 * SF_MAX_BOUNCES };
 
-static sf_coordinates coordinates;
+static sf_sample_dimensions coordinates;
 static float made[2][SF_PATHS], expected[2][SF_PATHS];
 
 /* As long a path as there is: of each bounce all that it can have. */
@@ -35,7 +35,7 @@ static void prepare(sf_pattern pattern) {
     }
     plan.max_bounces = SF_MAX_BOUNCES;
     plan.dimension_group_count = GROUPS;
-    assert_int_equal(sf_coordinates_init(&coordinates, pattern, &plan, 48, 1, &error), SF_STATUS_OK);
+    assert_int_equal(sf_sample_dimensions_init(&coordinates, pattern, &plan, 48, 1, &error), SF_STATUS_OK);
 }
 
 static void expect_stateless(uint32_t group, const sf_block blocks[SF_BLOCKS]) {
@@ -45,7 +45,7 @@ static void expect_stateless(uint32_t group, const sf_block blocks[SF_BLOCKS]) {
             expected[d][i] =
                 sf_halton_sample(blocks[i / SF_LANES].base + i % SF_LANES, source->first + d, blocks[i / SF_LANES].key);
     for (int isa = SF_ISA_BASELINE; isa <= (int)sf_isa_active(); ++isa) {
-        sf_coordinates_kernels_at((sf_isa)isa)->fill(&coordinates, source, blocks, SF_BLOCKS, made);
+        sf_sample_dimensions_kernels_at((sf_isa)isa)->fill(&coordinates, source, blocks, SF_BLOCKS, made);
         for (uint32_t d = 0; d < source->count; ++d)
             for (uint32_t i = 0; i < SF_BLOCKS * SF_LANES; ++i)
                 if (memcmp(made[d] + i, expected[d] + i, sizeof(float)) != 0)
@@ -95,7 +95,7 @@ static void test_halton_is_the_stateless_one(void **state) {
 static void expect_same_lanes(const sf_coordinate_source *source, const sf_block *blocks, uint32_t count,
                               uint32_t width, uint32_t first_sample, sf_isa isa) {
     static float scratch[2][SF_PATHS];
-    const sf_coordinates_kernels *kernels = sf_coordinates_kernels_at(isa);
+    const sf_sample_dimensions_kernels *kernels = sf_sample_dimensions_kernels_at(isa);
     kernels->fill(&coordinates, source, blocks, count, expected);
     kernels->fill_narrow(&coordinates, source, blocks, count, width, first_sample, scratch, made);
     for (uint32_t d = 0; d < source->count; ++d)

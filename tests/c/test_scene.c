@@ -257,7 +257,7 @@ static void test_plan_grows_with_lens_lights_background_and_bounces(void **state
     assert_int_equal(plan.surface_rays, 3);
     for (int stage = 0; stage < SF_STAGE_COUNT; ++stage)
         assert_int_equal(runs(&plan, (sf_stage)stage),
-                         stage != SF_STAGE_CAMERA && stage != SF_STAGE_INSTANCES && stage != SF_STAGE_ROUND &&
+                         stage != SF_STAGE_CAMERA && stage != SF_STAGE_INSTANCES && stage != SF_STAGE_QUADRIC &&
                              stage != SF_STAGE_SKY && stage != SF_STAGE_LIGHT_SHAPES && stage != SF_STAGE_SCATTER &&
                              stage != SF_STAGE_FOG && stage != SF_STAGE_LIGHT_TREE);
     sf_scene_destroy(scene);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-/* base: status and error, version, instruction-set level, float conversion, bit tricks.
+/* base: status and error, version, instruction set, float conversion, bit tricks.
  *
  * Everything here is thread-safe: the library holds no mutable global state.
  */
@@ -58,7 +58,7 @@ const char *sf_status_name(sf_status status);
  * Every look-up by name in the library compares so. */
 int sf_name_matches(const char *name, const char *known);
 
-/* The instruction-set level at which bulk kernels run. The core's results are the same bits
+/* The instruction set at which bulk kernels run. The core's results are the same bits
  * on every level. */
 typedef enum sf_isa { SF_ISA_BASELINE = 0, SF_ISA_AVX2, SF_ISA_AVX512 } sf_isa;
 

@@ -5,7 +5,7 @@
  *
  * They are the library's own so that no libm decides a picture: +, -, *, / and integer
  * operations in a fixed order, without branches, so that a loop over them vectorizes and gives
- * the same bits on every instruction-set level (see exact_begin.h for the caller's flags). Thread-safe.
+ * the same bits on every instruction set (see exact_begin.h for the caller's flags). Thread-safe.
  *
  * Angles are in turns, [0,1), as the unit square gives them: the reduction is then exact, where
  * one by pi rounds. float: minimax-like polynomials, interpolated at Chebyshev nodes to less

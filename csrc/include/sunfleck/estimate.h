@@ -20,7 +20,7 @@
  * with fewer than two, sample deviation and standard error are infinity: nothing is known.
  *
  * All states are plain structs, zeroed to begin ({0}), copied by assignment. Every function is
- * safe on distinct objects. Bulk calls give the same bits on every instruction-set level.
+ * safe on distinct objects. Bulk calls give the same bits on every instruction set.
  */
 #ifndef SUNFLECK_ESTIMATE_H
 #define SUNFLECK_ESTIMATE_H

@@ -11,7 +11,7 @@
  * Inline, for one's own loops (mapping_pixel.h, mapping_plane.h, mapping_sphere.h, mapping_lobe.h,
  * mapping_light.h): float, no branches, no libm
  * but what compiles to one instruction (sqrtf, fabsf, copysignf), so that loops over them
- * vectorize under -fno-math-errno; the same bits on every instruction-set level. They cannot
+ * vectorize under -fno-math-errno; the same bits on every instruction set. They cannot
  * fail: their preconditions are u in [0,1) and parameters in their ranges, asserted unless NDEBUG
  * is defined (an assertion keeps a loop from vectorizing).
  *

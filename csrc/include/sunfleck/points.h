@@ -5,7 +5,7 @@
  *
  * A point is a pure function of (pattern, options, seed, index, dimension): any part of a
  * pattern can be made at any time, in any order, on any thread, with the same bits on every
- * instruction-set level. Every function is thread-safe unless it says otherwise.
+ * instruction set. Every function is thread-safe unless it says otherwise.
  *
  * A coordinate is a 32-bit word; the float is its top 24 bits, never 1. The double's top 32
  * bits are that word too, and its further 21 bits continue it. Where a pattern has strata or
@@ -117,14 +117,14 @@ sf_status sf_pattern_valid_counts(sf_pattern pattern, uint32_t dims, uint64_t n,
 sf_status sf_grid_sides(uint64_t n, uint32_t dims, uint32_t *sides, sf_error *error);
 
 /* Threads that stay between fills, for arrays so small that to start threads takes as long as to
- * fill them. A crew is empty at first and grows as fills ask; its threads sleep when there has
- * been no work for 50 µs. Not across fork. Safe to share: a fill that finds the crew at work for
+ * fill them. A team is empty at first and grows as fills ask; its threads sleep when there has
+ * been no work for 50 µs. Not across fork. Safe to share: a fill that finds the team at work for
  * another starts threads of its own. Destroy it when no fill uses it; NULL is legal. */
-typedef struct sf_crew sf_crew;
-#define SF_CREW_MAX 255u /* threads */
+typedef struct sf_thread_team sf_thread_team;
+#define SF_THREAD_TEAM_MAX 255u /* threads */
 
-sf_status sf_crew_create(sf_crew **crew, sf_error *error);
-void sf_crew_destroy(sf_crew *crew);
+sf_status sf_thread_team_create(sf_thread_team **team, sf_error *error);
+void sf_thread_team_destroy(sf_thread_team *team);
 
 typedef struct sf_points_options {
     sf_pattern pattern;   /* default sobol */
@@ -140,7 +140,7 @@ typedef struct sf_points_options {
     uint64_t total;       /* how many points there will be, for patterns that need to know: first +
                              count at most total; 0 (default): first + count */
     uint32_t threads;     /* 1 (default) ..; 0: one for each processor. Changes no bit */
-    sf_crew *crew;        /* where they come from; NULL (default): started for the call */
+    sf_thread_team *team; /* where they come from; NULL (default): started for the call */
 } sf_points_options;
 
 sf_points_options sf_points_options_default(void);

@@ -9,7 +9,7 @@
  *
  * Every function is safe on distinct objects: one generator must not be drawn from by two
  * threads at once. Streams are frozen: a generator, seed and stream give the same words in every
- * release, on every instruction-set level.
+ * release, on every instruction set.
  */
 #ifndef SUNFLECK_RNG_H
 #define SUNFLECK_RNG_H

@@ -263,7 +263,7 @@ typedef enum sf_stage {
     SF_STAGE_LENS,         /* camera rays: thin lens, instead of the pinhole's */
     SF_STAGE_INTERSECT,    /* nearest hits of camera rays */
     SF_STAGE_INSTANCES,    /* which mesh of which instance was hit, and normals from there to the scene */
-    SF_STAGE_ROUND,        /* points and normals of spheres and disks */
+    SF_STAGE_QUADRIC,      /* points and normals of spheres and disks */
     SF_STAGE_FOG,          /* how far rays go in fog; what it leaves of sampled light */
     SF_STAGE_MISS,         /* background radiance for rays that hit nothing */
     SF_STAGE_SKY,          /* radiance of suns and the environment for rays that hit nothing */

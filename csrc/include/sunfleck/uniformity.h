@@ -5,7 +5,7 @@
  *
  * Points are `count` rows of `dims` doubles, count >= 1, dims >= 1, packed. Every function is
  * thread-safe, uses up to `threads` threads (0: one for each processor), and gives the same bits
- * for any number of them and on every instruction-set level. A coordinate outside the interval
+ * for any number of them and on every instruction set. A coordinate outside the interval
  * that a function states, NaN included, is refused with its place.
  */
 #ifndef SUNFLECK_UNIFORMITY_H
