@@ -36,7 +36,7 @@ from measure import ROOT, describe_build, describe_machine
 from numpy.typing import NDArray
 
 import sunfleck as sf
-from sunfleck.figure import Panel, Series, draw_panels, save
+from sunfleck.plot.figure import Panel, Series, draw_panels, save
 from sunfleck.provenance import provenance
 
 SIZE = 128

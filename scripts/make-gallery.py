@@ -7,7 +7,7 @@
 import sys
 from pathlib import Path
 
-from sunfleck.gallery import write_gallery_markdown
+from sunfleck.plot.gallery import write_gallery_markdown
 
 docs = Path(__file__).resolve().parents[1] / "docs"
 write_gallery_markdown(docs / "gallery.md", docs / "images" / "gallery", progress=sys.stderr.isatty())

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from sunfleck import estimate, mapping, scenes, uniformity
 from sunfleck._core import version as _version
+from sunfleck._former import keep_former_names as _keep_former_names
 from sunfleck.discrete import AliasTable, PiecewiseConstant1D, PiecewiseConstant2D
 from sunfleck.error import CheckpointError, Error
 from sunfleck.estimate import (
@@ -30,22 +31,22 @@ from sunfleck.estimate import (
     VectorMoments,
     WeightedMoments,
 )
-from sunfleck.fog import Fog
-from sunfleck.gallery import gallery
-from sunfleck.instances import Instances
 from sunfleck.integrate import Integral, IntegralLook, integrate
-from sunfleck.load import load
+from sunfleck.io.load import load
+from sunfleck.io.source import Limits
 from sunfleck.mapping import MAPPINGS
-from sunfleck.material import Conductor, Dielectric, Mirror
-from sunfleck.mesh import Mesh
+from sunfleck.plot.gallery import gallery
+from sunfleck.plot.show import show
 from sunfleck.points import PATTERNS, SCRAMBLES, points, valid_counts
 from sunfleck.render import AOVS, PIXEL_FILTERS, RENDER_PATTERNS, STOP_REASONS, Image, Progress, Summary, merge, render
 from sunfleck.rng import RNGS, Rng
 from sunfleck.scene import Camera, Plan, PlanDimensions, Scene, SceneInfo
-from sunfleck.shapes import Disk, Sphere
-from sunfleck.show import show
-from sunfleck.sky import Environment, Sun
-from sunfleck.source import Limits
+from sunfleck.scene.fog import Fog
+from sunfleck.scene.instances import Instances
+from sunfleck.scene.material import Conductor, Dielectric, Mirror
+from sunfleck.scene.mesh import Mesh
+from sunfleck.scene.shapes import Disk, Sphere
+from sunfleck.scene.sky import Environment, Sun
 from sunfleck.tolerance import Tolerance
 
 if TYPE_CHECKING:
@@ -64,6 +65,7 @@ else:
 
 
 __version__ = _version()
+_keep_former_names()
 
 __all__ = [
     "AOVS",

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sunfleck._arguments import number
-from sunfleck.image import encode_srgb
+from sunfleck.io.image import encode_srgb
 
 __all__ = ["auto_exposure", "blank", "exposure_of", "stops", "why_black"]
 

@@ -11,8 +11,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sunfleck.mesh import Mesh
 from sunfleck.scene import Camera, Scene
+from sunfleck.scene.mesh import Mesh
 
 __all__ = ["SCENES", "cornell", "defocus", "keyhole", "penumbra"]
 

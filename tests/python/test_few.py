@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import sunfleck as sf
-from sunfleck.material import Material
+from sunfleck.scene.material import Material
 
 MANY = 100  # more than are few, by csrc/scene/scene.c
 

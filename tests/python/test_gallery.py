@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 
 import sunfleck as sf
-from sunfleck import plates
 from sunfleck.cli import main
-from sunfleck.gallery import write_gallery_markdown
+from sunfleck.plot import plates
+from sunfleck.plot.gallery import write_gallery_markdown
 
 ROOT = Path(__file__).resolve().parents[2]
-MODULE = sys.modules["sunfleck.gallery"]  # the package's name for it is the function
+MODULE = sys.modules["sunfleck.plot.gallery"]
 
 # Of the lecture's slides that have figures, in its order.
 HEADINGS = [

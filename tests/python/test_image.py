@@ -14,7 +14,7 @@ import OpenImageIO as oiio
 import pytest
 
 import sunfleck as sf
-from sunfleck.image import encode_srgb, false_color
+from sunfleck.io.image import encode_srgb, false_color
 
 
 def read(path: Path) -> tuple[oiio.ImageSpec, np.ndarray]:

@@ -107,7 +107,7 @@ def test_ctrl_c_in_a_look_ends_the_loading(tmp_path: Path, monkeypatch: pytest.M
         return sf.render(scene, width, height, **{**options, "spp": 2**20}, progress=lambda _: False)
 
     path = write_gltf(tmp_path, [(*ROOM, 0)], [{"mesh": 0}, looking((0, 1.5, 2), (0, 1, 0))], cameras=[CAMERA])
-    monkeypatch.setattr("sunfleck.lamp.render", stopped)
+    monkeypatch.setattr("sunfleck.io.lamp.render", stopped)
     with pytest.raises(KeyboardInterrupt):
         sf.load(path)
     assert len(done) == looks + 1

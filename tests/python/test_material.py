@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import sunfleck as sf
-from sunfleck.material import Material
+from sunfleck.scene.material import Material
 
 WHITE = (1.0, 1.0, 1.0)
 

@@ -17,9 +17,9 @@ import numpy as np
 import pytest
 
 import sunfleck as sf
-from sunfleck import _text
-from sunfleck.load import FILE_TYPES
-from sunfleck.source import Source
+from sunfleck.io import text as lines
+from sunfleck.io.load import FILE_TYPES
+from sunfleck.io.source import Source
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 VERTICES = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [2, 1, 0]], dtype=np.float64)
@@ -88,7 +88,7 @@ def test_obj_in_blocks_is_the_same_as_at_once(tmp_path: Path, monkeypatch: pytes
         text += f"usemtl {'abc'[k % 3]}\nf -1/7 -2/8 -3/9\n"
     path = write(tmp_path, "a.obj", text)
     whole = meshes(path)
-    monkeypatch.setattr(_text, "BLOCK", 100)
+    monkeypatch.setattr(lines, "BLOCK", 100)
     parts = meshes(path)
     assert len(whole) == len(parts) == 4
     for one, other in zip(whole, parts, strict=True):
@@ -376,7 +376,7 @@ LOOP = "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  verte
 
 @pytest.mark.parametrize("newline", ["\n", "\r\n", "\r"])
 def test_stl_as_text(tmp_path: Path, newline: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(_text, "BLOCK", 64)
+    monkeypatch.setattr(lines, "BLOCK", 64)
     square = LOOP.replace(" endloop", "  vertex 0 1 0\n endloop")
     text = f"solid größe\n{LOOP}{LOOP.upper()}endsolid\nsolid empty\nendsolid\nsolid b\n{square}endsolid b"
     found = meshes(write(tmp_path, "a.stl", text.replace("\n", newline).encode("latin-1")))

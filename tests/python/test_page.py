@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from sunfleck.figure import Panel, Series, draw_panels, new_figure, png
-from sunfleck.page import Page
+from sunfleck.plot.figure import Panel, Series, draw_panels, new_figure, png
+from sunfleck.plot.page import Page
 
 OpenPage = Callable[[Path], Any]
 

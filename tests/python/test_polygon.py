@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sunfleck.polygon import compact, triangulate
+from sunfleck.io.polygon import compact, triangulate
 
 U = [(0, 0), (3, 0), (3, 2), (2, 2), (2, 1), (1, 1), (1, 2), (0, 2)]
 DART = [(2, -1), (1, 0), (2, 1), (0, 0)]

@@ -18,8 +18,8 @@ import pytest
 from matplotlib.colors import LogNorm, to_rgb
 
 import sunfleck as sf
-from sunfleck import heatmap as heatmaps
-from sunfleck.figure import Figure
+from sunfleck.plot import heatmap as heatmaps
+from sunfleck.plot.figure import Figure
 
 GREY = to_rgb("#BBBBBB")
 
@@ -192,7 +192,7 @@ def test_points_are_drawn_where_they_are() -> None:
 
 
 def test_points_of_space_are_seen_from_above_with_the_near_half_dark() -> None:
-    from sunfleck.show import seen
+    from sunfleck.plot.show import seen
 
     flat, near = seen(np.eye(3))
     # A turned view: lengths and angles of space are those of (right, up, near).

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import sunfleck as sf
-from sunfleck.image import read_radiance
-from sunfleck.source import Source
+from sunfleck.io.image import read_radiance
+from sunfleck.io.source import Source
 
 
 @pytest.fixture

@@ -28,7 +28,6 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from sunfleck._arguments import choice, integer, text
-from sunfleck._files import FilePath
 from sunfleck.chart.cells import Store
 from sunfleck.chart.generator_chart import generator_cells, generator_panels
 from sunfleck.chart.mapping_chart import mapping_cells, mapping_panels
@@ -37,6 +36,7 @@ from sunfleck.chart.pixels import RENDER_PATTERNS, Pixels
 from sunfleck.chart.result import CHART_TYPES, Chart, measured
 from sunfleck.chart.scene_chart import RULES, scene_cells, scene_panels, scene_pictures
 from sunfleck.integrands import INTEGRANDS
+from sunfleck.io.files import FilePath
 from sunfleck.mapping import MAPPINGS
 from sunfleck.render import PIXEL_FILTERS
 from sunfleck.rng import RNGS

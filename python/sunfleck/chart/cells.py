@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sunfleck import _core
-from sunfleck._files import FilePath, ending, given_path, replacing, writable_target
 from sunfleck.error import Error
+from sunfleck.io.files import FilePath, ending, given_path, replacing, writable_target
 from sunfleck.provenance import compiler, processor
 
 __all__ = ["TIMINGS", "Cell", "Key", "Store", "disturbance", "least_time", "measure_cells"]

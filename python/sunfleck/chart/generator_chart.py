@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sunfleck.chart.cells import Cell, Store, least_time
-from sunfleck.figure import Panel, Series
+from sunfleck.plot.figure import Panel, Series
 from sunfleck.rng import Rng
 
 __all__ = ["FAILED", "TESTS", "generator_cells", "generator_panels", "linear_complexity"]

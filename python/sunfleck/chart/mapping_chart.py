@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from sunfleck import mapping
 from sunfleck.chart.cells import TIMINGS, Cell, Store, least_time
-from sunfleck.figure import Panel, Series
+from sunfleck.plot.figure import Panel, Series
 from sunfleck.points import points
 
 __all__ = ["PARAMETERS", "accuracy", "mapping_cells", "mapping_panels"]

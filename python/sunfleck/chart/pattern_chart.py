@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from sunfleck.chart.cells import Cell, Key, Store, least_time
 from sunfleck.chart.fit import FLOOR, Fit, fit_slope, log_allowance, pareto_front, theory_of, winners
 from sunfleck.chart.pixels import RENDER_PATTERNS, Pixels
-from sunfleck.figure import Panel, Series
 from sunfleck.integrands import INTEGRANDS, Integrand, standard_deviation
+from sunfleck.plot.figure import Panel, Series
 from sunfleck.points import PATTERNS, SCRAMBLES, points, valid_counts
 
 __all__ = ["DEFAULT_PATTERNS", "VARIANTS", "Method", "method_named", "pattern_cells", "pattern_panels"]

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sunfleck.chart.cells import Cell, Key, Store
-from sunfleck.load import scene_by_name
+from sunfleck.io.load import scene_by_name
 from sunfleck.render import Image, render
 from sunfleck.scene import Scene
 from sunfleck.scenes import SCENES

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from sunfleck._files import FilePath, ending, replacing
 from sunfleck.chart.cells import Cell, Store, disturbance, measure_cells
-from sunfleck.figure import FIGURE_TYPES, Panel, draw_panels, png, save
-from sunfleck.page import PAGE_TYPES, Page
+from sunfleck.io.files import FilePath, ending, replacing
+from sunfleck.plot.figure import FIGURE_TYPES, Panel, draw_panels, png, save
+from sunfleck.plot.page import PAGE_TYPES, Page
 from sunfleck.provenance import provenance
 
 __all__ = ["CHART_TYPES", "Chart", "measured"]
@@ -30,7 +30,7 @@ class Chart:
     Attributes
     ----------
     title : str
-    panels : list of sunfleck.figure.Panel
+    panels : list of sunfleck.plot.figure.Panel
         What is drawn: every number of the figure.
     text : str
         The findings in words: winners, slopes, what departs from theory.

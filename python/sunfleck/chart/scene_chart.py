@@ -17,7 +17,7 @@ from sunfleck.chart.cells import Cell, Key, Store, least_time
 from sunfleck.chart.fit import pareto_front, winners
 from sunfleck.chart.pixels import Pixels, level_of, relative_mse
 from sunfleck.estimate import normal_quantile
-from sunfleck.figure import Panel, Series
+from sunfleck.plot.figure import Panel, Series
 from sunfleck.render import STOP_REASONS, Image
 
 __all__ = ["RULES", "scene_cells", "scene_panels", "scene_pictures"]

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sunfleck.figure import Panel, Series
+from sunfleck.plot.figure import Panel, Series
 
 __all__ = ["Experiment", "Measured", "bars", "image", "lines", "scatter"]
 

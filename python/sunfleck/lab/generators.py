@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 
 import sunfleck as sf
-from sunfleck.figure import Panel
 from sunfleck.lab.experiment import Array, Experiment, Measured, image, lines, scatter
+from sunfleck.plot.figure import Panel
 
 __all__ = ["EXPERIMENTS"]
 

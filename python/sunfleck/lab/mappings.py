@@ -10,8 +10,8 @@ from collections.abc import Callable
 import numpy as np
 
 import sunfleck as sf
-from sunfleck.figure import Panel
 from sunfleck.lab.experiment import Array, Experiment, Measured, scatter
+from sunfleck.plot.figure import Panel
 
 __all__ = ["EXPERIMENTS"]
 

@@ -9,10 +9,10 @@ import dataclasses
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from sunfleck._files import FilePath, replacing
-from sunfleck.figure import FIGURE_TYPES, Figure, draw_panels
+from sunfleck.io.files import FilePath, replacing
 from sunfleck.lab.experiment import Experiment, Measured
-from sunfleck.page import Page
+from sunfleck.plot.figure import FIGURE_TYPES, Figure, draw_panels
+from sunfleck.plot.page import Page
 from sunfleck.provenance import provenance
 
 __all__ = ["Result", "draw", "table", "write_all"]
