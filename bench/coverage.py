@@ -211,7 +211,7 @@ def main() -> None:
     parser.add_argument("scenes", nargs="*", default=list(TOLERANCES), metavar="SCENE", help="default: all four")
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--patterns", nargs="*", default=["sobol", "random"])
-    parser.add_argument("--rules", nargs="*", default=["dyadic", "half-buffer", "standard-error"])
+    parser.add_argument("--rules", nargs="*", default=["dyadic", "half-buffer", "standard_error"])
     parser.add_argument("--truth-spp", type=int, default=65536, help="of a reference of our own (default 65536)")
     parser.add_argument("-o", "--output", type=Path, default=ROOT / "build/coverage.json")
     parser.add_argument("--draw", type=Path, metavar="FILE", help="draw what --output holds, and measure nothing")

@@ -25,7 +25,7 @@ import sunfleck as sf
 
 SIZE = 128
 MET = sf.STOP_REASONS.index("met")
-RULES = ("dyadic", "standard-error", "replicates")
+RULES = ("dyadic", "standard_error", "replicates")
 
 
 def level_of(image: sf.Image) -> NDArray[np.float64]:

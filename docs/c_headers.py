@@ -60,7 +60,7 @@ def _classify(source: str) -> tuple[str, str]:
         return "type", found[1]
     if found := re.match(r"(static const [^=]*?) ?=", code):
         return "var", found[1]
-    signature = re.sub(r"^SF_INLINE ", "static inline ", code)
+    signature = re.sub(r"^SF_INLINE ", "static inline ", code.removeprefix("SF_API "))
     return "function", re.split(r" \{|;", signature)[0]
 
 

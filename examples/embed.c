@@ -62,7 +62,7 @@ int main(int argc, char **argv) {
     } else {
         const sf_film_summary s = sf_film_summarize(film);
         printf("%s: %.1f %% of pixels within %.3g, %.1f samples a pixel, %.2f s\n", path,
-               100.0 * (double)s.reasons[SF_STOP_MET] / (double)s.pixels, s.tolerance,
+               100.0 * (double)s.reasons[SF_STOP_REASON_MET] / (double)s.pixels, s.tolerance,
                (double)s.samples / (double)s.pixels, s.seconds);
     }
     sf_film_destroy(film);

@@ -18,7 +18,7 @@ import numpy as np
 
 import sunfleck as sf
 
-STOPS = ("standard-error", "replicates", "dyadic")
+STOPS = ("standard_error", "replicates", "dyadic")
 SCRAMBLES = ("default", None, "permuted", "shift", "lms", "owen", "nested")
 CORNERS = ((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), (0.0, 1.0, 1.5))
 PARAMETERS: dict[str, tuple[object, ...]] = {  # of the mappings that take some

@@ -1,17 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Version, names of statuses, and the instruction set that kernels run at. */
 #include "sunfleck/base.h"
 
-#if defined(__linux__)
-#include <sched.h>
-#endif
-#include <stdarg.h>
-#include <stdio.h>
-#include <unistd.h>
-
-#include "base/error.h"
-#include "base/platform.h"
+#include <stdlib.h>
 
 #define SF_TEXT_(x) #x
 #define SF_TEXT(x) SF_TEXT_(x)
@@ -57,27 +50,4 @@ sf_isa sf_isa_active(void) {
     for (int isa = SF_ISA_BASELINE; isa <= (int)best; ++isa)
         if (sf_name_matches(asked, sf_isa_name((sf_isa)isa))) return (sf_isa)isa;
     return best;
-}
-
-sf_status sf_fail(sf_error *error, sf_status status, const char *format, ...) {
-    if (!error) return status;
-    error->status = status;
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(error->message, sizeof error->message, format, arguments);
-    va_end(arguments);
-    return status;
-}
-
-sf_status sf_fail_memory(sf_error *error, const char *what, size_t bytes) {
-    return sf_fail(error, SF_STATUS_OUT_OF_MEMORY, "out of memory: %zu bytes for %s", bytes, what);
-}
-
-unsigned sf_processor_count(void) {
-#if defined(__linux__)
-    cpu_set_t set;
-    if (sched_getaffinity(0, sizeof set, &set) == 0 && CPU_COUNT(&set) > 0) return (unsigned)CPU_COUNT(&set);
-#endif
-    long count = sysconf(_SC_NPROCESSORS_ONLN);
-    return count > 0 ? (unsigned)count : 1;
 }

@@ -8,12 +8,13 @@
 
 #include "base/error.h"
 
-/* Of ASCII alone, in which all names are; the C library's depends on the locale. */
-static int lower(char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; }
+/* What a character stands for: small letters for capital ones, and one separator of words for all three. Of ASCII
+ * alone, in which all names are; the C library's `tolower` depends on the locale. */
+static int folded(char c) { return c == '-' || c == ' ' ? '_' : c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; }
 
 int sf_name_matches(const char *name, const char *known) {
     if (!name || !known) return 0;
-    while (*name && lower(*name) == lower(*known)) ++name, ++known;
+    while (*name && folded(*name) == folded(*known)) ++name, ++known;
     return *name == *known;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-/* Looking a name up among those that an enumeration has. */
+/* Looking a name up among those that an enumeration has. Names are written with small letters and "_" between
+ * words; in what a caller gives, capital letters are as small ones, and "-" and " " as "_". */
 #ifndef SUNFLECK_NAME_H
 #define SUNFLECK_NAME_H
 

@@ -5,7 +5,11 @@
 #include "base/parallel.h"
 
 #include <errno.h>
+#if defined(__linux__)
+#include <sched.h>
+#endif
 #include <stdbool.h>
+#include <unistd.h>
 
 #include "base/error.h"
 #include "base/platform.h"
@@ -96,6 +100,15 @@ static void join_threads(sf_thread_pool *pool) {
     pthread_cond_destroy(&pool->start);
     pthread_cond_destroy(&pool->finish);
     pthread_mutex_destroy(&pool->mutex);
+}
+
+unsigned sf_processor_count(void) {
+#if defined(__linux__)
+    cpu_set_t set;
+    if (sched_getaffinity(0, sizeof set, &set) == 0 && CPU_COUNT(&set) > 0) return (unsigned)CPU_COUNT(&set);
+#endif
+    long count = sysconf(_SC_NPROCESSORS_ONLN);
+    return count > 0 ? (unsigned)count : 1;
 }
 
 unsigned sf_parallel_threads(uint32_t threads, size_t items) {

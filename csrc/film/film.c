@@ -35,7 +35,7 @@ const char *sf_work_name(sf_work work) {
 }
 
 const char *sf_stop_rule_name(sf_stop_rule rule) {
-    static const char *const names[] = {"standard-error", "replicates", "dyadic"};
+    static const char *const names[] = {"standard_error", "replicates", "dyadic"};
     return (unsigned)rule < 3 ? names[rule] : NULL;
 }
 
@@ -45,7 +45,7 @@ const char *sf_seed_policy_name(sf_seed_policy policy) {
 }
 
 const char *sf_stop_reason_name(sf_stop_reason reason) {
-    static const char *const names[] = {"fixed",      "met",         "max samples", "out of time",
+    static const char *const names[] = {"fixed",      "met",         "max_samples", "out_of_time",
                                         "suspicious", "interrupted", "masked"};
     return (unsigned)reason < SF_STOP_REASON_COUNT ? names[reason] : NULL;
 }
@@ -128,7 +128,8 @@ sf_status sf_film_create(const sf_render_options *options, bool masked, sf_film 
 void sf_film_mark_pilot(sf_film *film) {
     for (size_t i = 0; i < film->stored; ++i) {
         sf_film_pixel *pixel = film->pixels + i;
-        if (sf_film_taken(pixel) && pixel->reason != SF_STOP_SUSPICIOUS) pixel->reason = SF_STOP_INTERRUPTED;
+        if (sf_film_taken(pixel) && pixel->reason != SF_STOP_REASON_SUSPICIOUS)
+            pixel->reason = SF_STOP_REASON_INTERRUPTED;
     }
 }
 
@@ -184,7 +185,7 @@ double sf_film_level(const sf_film *film) {
 /* A pixel that the mask leaves out. The arrays began as zeros. */
 static void leave_out(sf_film *film, size_t i) {
     film->half_width[i] = INFINITY;
-    film->reason[i] = SF_STOP_MASKED;
+    film->reason[i] = SF_STOP_REASON_MASKED;
 }
 
 /* A pixel without a sample. The arrays began as zeros; to leave pages alone saves the half second

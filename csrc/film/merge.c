@@ -79,9 +79,9 @@ static sf_status check_films(const sf_film *const *films, size_t count, sf_error
 
 /* How little a reason says the pixel is done: the least final of several holds for the merged. */
 static int openness(uint8_t reason) {
-    static const int order[SF_STOP_REASON_COUNT] = {[SF_STOP_FIXED] = 0,       [SF_STOP_MET] = 1,
-                                                    [SF_STOP_MAX_SAMPLES] = 2, [SF_STOP_OUT_OF_TIME] = 3,
-                                                    [SF_STOP_INTERRUPTED] = 4, [SF_STOP_SUSPICIOUS] = 5};
+    static const int order[SF_STOP_REASON_COUNT] = {[SF_STOP_REASON_FIXED] = 0,       [SF_STOP_REASON_MET] = 1,
+                                                    [SF_STOP_REASON_MAX_SAMPLES] = 2, [SF_STOP_REASON_OUT_OF_TIME] = 3,
+                                                    [SF_STOP_REASON_INTERRUPTED] = 4, [SF_STOP_REASON_SUSPICIOUS] = 5};
     return order[reason];
 }
 
@@ -186,7 +186,7 @@ static sf_status merge_pixels(sf_film *film, const sf_film *const *films, size_t
                 return sf_fail(error, SF_STATUS_INVALID_VALUE, "pixel (%u, %u) would have more than %u samples",
                                frame_x, frame_y, UINT32_MAX);
             bool met = tolerance > 0 && (double)pixel->half_width <= tolerance;
-            if (met && pixel->reason != SF_STOP_SUSPICIOUS) pixel->reason = SF_STOP_MET;
+            if (met && pixel->reason != SF_STOP_REASON_SUSPICIOUS) pixel->reason = SF_STOP_REASON_MET;
         }
     return SF_STATUS_OK;
 }

@@ -23,7 +23,7 @@ sf_render_options sf_render_options_default(void) {
                                .min_spp = 32,
                                .max_spp = 4096,
                                .pattern = SF_PATTERN_SOBOL,
-                               .stop = SF_STOP_DYADIC,
+                               .stop = SF_STOP_RULE_DYADIC,
                                .tile_size = 16,
                                .checkpoint_seconds = 30};
 }

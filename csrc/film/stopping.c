@@ -30,13 +30,13 @@ static uint32_t power_at_least(uint32_t n) {
 }
 
 static uint32_t first_look(const sf_render_options *o) {
-    uint32_t least = o->stop == SF_STOP_REPLICATES ? FIRST_REPLICATES : FIRST_LOOK;
+    uint32_t least = o->stop == SF_STOP_RULE_REPLICATES ? FIRST_REPLICATES : FIRST_LOOK;
     uint32_t asked = o->spp ? least : power_at_least(o->min_spp);
     return asked > least ? asked : least;
 }
 
 uint32_t sf_stop_next_look(const sf_render_options *o, uint32_t n) {
-    if (o->stop == SF_STOP_STANDARD_ERROR) {
+    if (o->stop == SF_STOP_RULE_STANDARD_ERROR) {
         if (n < o->min_spp && !o->spp) return o->min_spp;
         return sf_stop_quarter_more(n);
     }
@@ -45,7 +45,7 @@ uint32_t sf_stop_next_look(const sf_render_options *o, uint32_t n) {
 }
 
 bool sf_stop_is_look(const sf_render_options *o, uint32_t n) {
-    if (o->stop == SF_STOP_STANDARD_ERROR) return n >= 2;
+    if (o->stop == SF_STOP_RULE_STANDARD_ERROR) return n >= 2;
     return o->start == 0 && n >= first_look(o) && (n & (n - 1)) == 0;
 }
 
@@ -56,7 +56,7 @@ static unsigned log2_of(uint32_t power) {
 }
 
 sf_lap sf_stop_lap(const sf_render_options *o, uint32_t look) {
-    if (o->stop != SF_STOP_DYADIC || o->start) return (sf_lap){0, 0};
+    if (o->stop != SF_STOP_RULE_DYADIC || o->start) return (sf_lap){0, 0};
     unsigned depth = log2_of(look / SF_LANES), levels = depth < LEVELS ? depth : LEVELS;
     return (sf_lap){.levels = levels, .unit_shift = depth - levels};
 }
@@ -256,22 +256,22 @@ static float replicates_half_width(const sf_film *film, const sf_film_pixel *pix
 void sf_stop_set_factors(sf_film *film, const sf_render_options *o) {
     film->unseen = -(double)sf_log((float)(1 - o->confidence));
     film->factors[0] = sf_normal_factor(o->confidence);
-    if (o->stop == SF_STOP_REPLICATES) film->factors[0] = sf_student_t_factor(o->confidence, SF_REPLICATES - 1);
+    if (o->stop == SF_STOP_RULE_REPLICATES) film->factors[0] = sf_student_t_factor(o->confidence, SF_REPLICATES - 1);
     for (unsigned levels = 1; levels <= LEVELS; ++levels)
         film->factors[levels] = sf_student_t_factor(o->confidence, 9.0 * ((1u << levels) - 1)) * sqrt(SAFETY);
 }
 
 double sf_stop_factor(const sf_film *film, const sf_render_options *o, const sf_film_pixel *pixel) {
-    unsigned levels = o->stop == SF_STOP_DYADIC ? pixel->look : 0;
+    unsigned levels = o->stop == SF_STOP_RULE_DYADIC ? pixel->look : 0;
     return film->factors[levels < LEVELS ? levels : LEVELS];
 }
 
 float sf_stop_half_width(const sf_film *film, const sf_render_options *o, uint32_t x, uint32_t y) {
     const sf_film_pixel *pixel = sf_film_at(film, x, y);
     double factor = sf_stop_factor(film, o, pixel);
-    if (o->stop == SF_STOP_REPLICATES && sf_stop_is_look(o, (uint32_t)sf_film_taken(pixel)))
+    if (o->stop == SF_STOP_RULE_REPLICATES && sf_stop_is_look(o, (uint32_t)sf_film_taken(pixel)))
         return replicates_half_width(film, pixel, factor);
-    if (o->stop != SF_STOP_DYADIC || !pixel->look) return sf_film_half_width(pixel, factor);
+    if (o->stop != SF_STOP_RULE_DYADIC || !pixel->look) return sf_film_half_width(pixel, factor);
     double half_width = factor * sqrt((double)pooled_variance(film, x, y, false));
     double least = unseen(film, (double)((uint64_t)SF_LANES << pixel->look));
     return (float)(half_width > least ? half_width : least);
@@ -279,7 +279,7 @@ float sf_stop_half_width(const sf_film *film, const sf_render_options *o, uint32
 
 double sf_stop_relative_error(const sf_film *film, const sf_film_pixel *pixel) {
     if (sf_film_taken(pixel) == 0) return INFINITY;
-    if (film->options.stop == SF_STOP_DYADIC && pixel->look)
+    if (film->options.stop == SF_STOP_RULE_DYADIC && pixel->look)
         return SAFETY * (double)pixel->variance * relative_weight(pixel);
     double error = (double)pixel->half_width / sf_stop_factor(film, &film->options, pixel);
     return error * error * relative_weight(pixel);
@@ -287,7 +287,7 @@ double sf_stop_relative_error(const sf_film *film, const sf_film_pixel *pixel) {
 
 float sf_stop_relative_error_around(const sf_film *film, uint32_t x, uint32_t y) {
     const sf_film_pixel *pixel = sf_film_at(film, x, y);
-    if (film->options.stop != SF_STOP_DYADIC || !pixel->look) return (float)sf_stop_relative_error(film, pixel);
+    if (film->options.stop != SF_STOP_RULE_DYADIC || !pixel->look) return (float)sf_stop_relative_error(film, pixel);
     return (float)SAFETY * pooled_variance(film, x, y, true);
 }
 

@@ -19,7 +19,7 @@
 /* ---- options ---- */
 
 const char *sf_integral_stop_name(sf_integral_stop stop) {
-    static const char *const names[SF_INTEGRAL_STOP_COUNT] = {"met", "max samples", "interrupted", "suspicious"};
+    static const char *const names[SF_INTEGRAL_STOP_COUNT] = {"met", "max_samples", "interrupted", "suspicious"};
     return (unsigned)stop < SF_INTEGRAL_STOP_COUNT ? names[stop] : NULL;
 }
 

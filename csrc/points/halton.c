@@ -11,19 +11,6 @@ enum { MAX_BLOCK = 1024 }; /* base^low_digits is at most this, or the base itsel
 
 /* ---- primes ---- */
 
-static int is_prime(uint32_t n) {
-    for (uint32_t factor = 3; factor * factor <= n; factor += 2)
-        if (n % factor == 0) return 0;
-    return n == 2 || n % 2;
-}
-
-uint32_t sf_next_prime(uint32_t n) {
-    if (n < 2) return 2;
-    do n += 1 + n % 2;
-    while (!is_prime(n));
-    return n;
-}
-
 /* The primes of the dimensions that a renderer asks for one at a time. */
 static const uint16_t first_primes[] = {2,   3,   5,   7,   11,  13,  17,  19,  23,  29,  31,  37,  41,  43,  47,  53,
                                         59,  61,  67,  71,  73,  79,  83,  89,  97,  101, 103, 107, 109, 113, 127, 131,

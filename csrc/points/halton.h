@@ -32,8 +32,19 @@ typedef struct sf_halton_sum {
 
 sf_halton_axis sf_halton_axis_make(uint32_t base, uint32_t dimension, sf_scramble scramble, uint64_t seed);
 
+static inline int sf_is_prime(uint32_t n) {
+    for (uint32_t factor = 3; factor * factor <= n; factor += 2)
+        if (n % factor == 0) return 0;
+    return n == 2 || n % 2;
+}
+
 /* The prime after n. */
-uint32_t sf_next_prime(uint32_t n);
+static inline uint32_t sf_next_prime(uint32_t n) {
+    if (n < 2) return 2;
+    do n += 1 + n % 2;
+    while (!sf_is_prime(n));
+    return n;
+}
 
 /* The digit that stands at a place for `digit`. */
 uint32_t sf_halton_digit(const sf_halton_axis *axis, unsigned place, uint32_t digit);

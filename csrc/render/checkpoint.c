@@ -137,7 +137,7 @@ static void mark_unfinished(sf_film *film, const uint64_t *open, bool second) {
             sf_film_pixel *pixel = sf_film_at(film, x, y);
             pixel->half_width = second ? sf_film_half_width(pixel, sf_normal_factor(film->options.confidence))
                                        : sf_stop_half_width(film, &film->options, x, y);
-            pixel->reason = pixel->moments.nonfinite ? SF_STOP_SUSPICIOUS : SF_STOP_INTERRUPTED;
+            pixel->reason = pixel->moments.nonfinite ? SF_STOP_REASON_SUSPICIOUS : SF_STOP_REASON_INTERRUPTED;
         }
 }
 

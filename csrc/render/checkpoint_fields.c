@@ -207,7 +207,7 @@ static bool evidence_is_sound(const sf_checkpoint *c, const sf_film_pixel *p) {
         return planned >= 0 && planned <= sf_stop_most(o) && planned == floor(planned) &&
                (double)sf_film_taken(p) <= planned;
     }
-    if (o->stop == SF_STOP_REPLICATES) {
+    if (o->stop == SF_STOP_RULE_REPLICATES) {
         for (int i = 0; i < SF_REPLICATES - 1; ++i)
             if (!isfinite(p->evidence.replicates[i])) return false;
         return true;

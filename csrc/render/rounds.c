@@ -114,9 +114,10 @@ static void look_at_pool(void *user, unsigned worker, size_t item) {
 
 /* Why a pixel that is not met is closed. */
 static sf_stop_reason unmet_reason(const sf_rounds *r, bool full, size_t state) {
-    if (full) return r->options.spp ? SF_STOP_FIXED : SF_STOP_MAX_SAMPLES;
-    if (state == SF_OUT_OF_TIME) return SF_STOP_OUT_OF_TIME;
-    return state == SF_INTERRUPTED ? SF_STOP_INTERRUPTED : SF_STOP_MAX_SAMPLES; /* a budget of samples is spent */
+    if (full) return r->options.spp ? SF_STOP_REASON_FIXED : SF_STOP_REASON_MAX_SAMPLES;
+    if (state == SF_OUT_OF_TIME) return SF_STOP_REASON_OUT_OF_TIME;
+    return state == SF_INTERRUPTED ? SF_STOP_REASON_INTERRUPTED
+                                   : SF_STOP_REASON_MAX_SAMPLES; /* a budget of samples is spent */
 }
 
 /* Whether the pixel's second set is done; half-width and reason are the pilot's, but where it is not. */
@@ -129,7 +130,7 @@ static bool decide_second(const sf_rounds *r, sf_film_pixel *pixel, size_t state
         pixel->look = 0; /* it is no look's */
         pixel->reason = (uint8_t)unmet_reason(r, false, state);
     }
-    if (pixel->moments.nonfinite) pixel->reason = SF_STOP_SUSPICIOUS;
+    if (pixel->moments.nonfinite) pixel->reason = SF_STOP_REASON_SUSPICIOUS;
     return true;
 }
 
@@ -151,9 +152,9 @@ static bool decide_pixel(sf_rounds *r, uint32_t x, uint32_t y, size_t state) {
         met = state == SF_SPENT && sf_relmse_target_is_reached(r->goal);
     }
     if (!met && !full && state == SF_RUNNING) return false;
-    sf_stop_reason reason = met ? SF_STOP_MET : unmet_reason(r, full, state);
-    bool doubted = pixel->doubt && (reason == SF_STOP_MAX_SAMPLES || reason == SF_STOP_OUT_OF_TIME);
-    pixel->reason = (uint8_t)(pixel->moments.nonfinite || doubted ? SF_STOP_SUSPICIOUS : reason);
+    sf_stop_reason reason = met ? SF_STOP_REASON_MET : unmet_reason(r, full, state);
+    bool doubted = pixel->doubt && (reason == SF_STOP_REASON_MAX_SAMPLES || reason == SF_STOP_REASON_OUT_OF_TIME);
+    pixel->reason = (uint8_t)(pixel->moments.nonfinite || doubted ? SF_STOP_REASON_SUSPICIOUS : reason);
     return true;
 }
 
@@ -167,7 +168,7 @@ static void decide_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
             r->open[cell] &= ~bit;
             if (!sf_rounds_in_picture(r, x, y)) continue;
             ++worker->done;
-            worker->met += sf_film_at(r->film, x, y)->reason == SF_STOP_MET;
+            worker->met += sf_film_at(r->film, x, y)->reason == SF_STOP_REASON_MET;
         }
 }
 

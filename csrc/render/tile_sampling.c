@@ -24,7 +24,7 @@ static void add_block(sf_rounds *r, uint32_t i, sf_batch *batch) {
         sf_film_add(pixel, statistics);
     double mean = sf_film_level_of(&statistics->moments);
     if (r->lap.levels) sf_dyadic_add(&pixel->evidence.dyadic, mean, block->number, r->lap);
-    if (r->options.stop == SF_STOP_REPLICATES && !r->second && block->number % SF_REPLICATES < SF_REPLICATES - 1)
+    if (r->options.stop == SF_STOP_RULE_REPLICATES && !r->second && block->number % SF_REPLICATES < SF_REPLICATES - 1)
         pixel->evidence.replicates[block->number % SF_REPLICATES] += mean;
 }
 
@@ -56,7 +56,7 @@ static sf_block make_block(const sf_rounds *r, uint32_t x, uint32_t y, uint64_t 
                       .y = y + r->film->y0,
                       .pixel = (uint32_t)sf_film_index(r->film, x, y),
                       .number = base / SF_LANES};
-    if (r->options.stop == SF_STOP_REPLICATES) { /* replicates take turns by the block */
+    if (r->options.stop == SF_STOP_RULE_REPLICATES) { /* replicates take turns by the block */
         block.key = sf_hash64(key, block.number % SF_REPLICATES + 1);
         block.base = block.number / SF_REPLICATES * SF_LANES;
     }

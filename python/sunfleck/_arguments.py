@@ -100,16 +100,24 @@ def text(name: str, value: Any) -> str:
 
 
 def choice(name: str, value: Any, allowed: Iterable[str], lead: str = "choose one of") -> str:
-    """The one of the allowed names that a string is, upper and lower case being alike."""
+    """The one of the allowed names that a string is; capital letters are as small ones, and "-", "_" and " " are one."""
     names = tuple(allowed)
     given = text(name, value)
+    if given in names:
+        return given
     for known in names:
-        if given == known:
-            return known
-    for known in names:
-        if given.lower() == known.lower():
+        if _folded(given) == _folded(known):
             return known
     raise ValueError(f"{name} is {given!r}; {lead} {', '.join(names)}")
+
+
+def spoken(name: str) -> str:
+    """A name as it stands in a sentence."""
+    return name.replace("_", " ")
+
+
+def _folded(name: str) -> str:
+    return name.lower().replace("-", "_").replace(" ", "_")
 
 
 def one_of(name: str, value: DTypeLike, allowed: Sequence[str]) -> np.dtype[Any]:

@@ -43,7 +43,7 @@ class Integral:
     samples : int
         Evaluations of the function, all of them.
     stop_reason : str
-        "met": the half-width is within the tolerance. "max samples": the next look would have
+        "met": the half-width is within the tolerance. "max_samples": the next look would have
         needed more. "interrupted": by Ctrl-C. "suspicious": met or not, the half-width can't be
         trusted, in at least one component: samples were not finite; or the means of the replicates
         follow the most extreme sample of each, or the most extreme of all are spread as those of a

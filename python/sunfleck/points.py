@@ -46,7 +46,7 @@ def points(
     Parameters
     ----------
     pattern : str
-        One of `sunfleck.PATTERNS`. Names are the same in upper and lower case.
+        One of `sunfleck.PATTERNS`. Capital letters are as small ones, and "-" as "_".
     n : int
         How many points. uniform, jittered, multijittered and orthogonal take some counts only,
         see `valid_counts`: of `total`, where that is given.

@@ -105,7 +105,7 @@ static void test_variance_is_that_of_the_pixels_mean(void **state) {
     lit_floor_create(&s, 1);
     sf_render_options options = options_for(SIZE, 64, 1u << SF_AOV_VARIANCE);
     options.pattern = SF_PATTERN_RANDOM;
-    options.stop = SF_STOP_STANDARD_ERROR; /* exact for independent samples; dyadic adds its margin */
+    options.stop = SF_STOP_RULE_STANDARD_ERROR; /* exact for independent samples; dyadic adds its margin */
     static sf_moments means[SIZE * SIZE];
     double claimed = 0, found = 0;
     memset(means, 0, sizeof means);

@@ -115,11 +115,11 @@ static sf_render_options kind_of_render(int kind) {
     sf_render_options options = options_for(42, kind == 0 ? 400 : 0);
     if (kind == 1) options.relative_tolerance = 0.002;
     if (kind == 2) options.absolute_tolerance = 0.01;
-    if (kind == 2) options.stop = SF_STOP_STANDARD_ERROR;
+    if (kind == 2) options.stop = SF_STOP_RULE_STANDARD_ERROR;
     if (kind == 2) options.min_spp = 21; /* rounds end within blocks */
     if (kind == 2) options.max_spp = 203;
     if (kind == 3) options.samples = 100 * 42 * 42;
-    if (kind == 4) options.stop = SF_STOP_REPLICATES;
+    if (kind == 4) options.stop = SF_STOP_RULE_REPLICATES;
     if (kind == 4) options.absolute_tolerance = 0.0005;
     if (kind == 5) options.relative_tolerance = 0.004;
     if (kind == 5) options.aovs = (1u << SF_AOV_COUNT) - 1;
@@ -180,7 +180,7 @@ static void test_stops_within_rounds_change_no_bit(void **state) {
             sf_film *film = render(scene, &options);
             spent = sf_film_summarize(film).seconds;
             within += file_value("state.from") < file_value("state.to");
-            done = sf_film_summarize(film).reasons[SF_STOP_OUT_OF_TIME] == 0;
+            done = sf_film_summarize(film).reasons[SF_STOP_REASON_OUT_OF_TIME] == 0;
             if (done) assert_same_film(whole, film);
             sf_film_destroy(film);
         }
@@ -299,12 +299,12 @@ static void test_a_tighter_tolerance_goes_on_to_the_bits_of_a_fresh_render(void 
     const sf_scene *scene = ((lit_floor *)*state)->scene;
     sf_render_options options = options_for(50, 0);
     options.relative_tolerance = 0.06;
-    options.stop = SF_STOP_STANDARD_ERROR;
+    options.stop = SF_STOP_RULE_STANDARD_ERROR;
     options.max_spp = 112;
     options.checkpoint_path = FILE_NAME;
     sf_film *easy = render(scene, &options);
-    assert_true(sf_film_summarize(easy).reasons[SF_STOP_MET] > 0);
-    assert_true(sf_film_summarize(easy).reasons[SF_STOP_MAX_SAMPLES] > 0);
+    assert_true(sf_film_summarize(easy).reasons[SF_STOP_REASON_MET] > 0);
+    assert_true(sf_film_summarize(easy).reasons[SF_STOP_REASON_MAX_SAMPLES] > 0);
     options.relative_tolerance = 0.02;
     options.max_spp = 1008;
     uint32_t stop = 3; /* and the extension may be stopped as well, while it catches up or later */
@@ -330,9 +330,9 @@ static void test_more_time_adds_to_what_was_spent(void **state) {
     options.checkpoint_path = FILE_NAME;
     sf_film *first = render(scene, &options), *again = render(scene, &options);
     sf_film_summary spent = sf_film_summarize(first), none = sf_film_summarize(again);
-    assert_true(spent.seconds >= 0.05 && spent.reasons[SF_STOP_OUT_OF_TIME] > 0);
+    assert_true(spent.seconds >= 0.05 && spent.reasons[SF_STOP_REASON_OUT_OF_TIME] > 0);
     /* Of the time asked for nothing is left: a batch of each thread, at the most, is added. */
-    assert_true(none.seconds >= 0.05 && none.reasons[SF_STOP_OUT_OF_TIME] > 0);
+    assert_true(none.seconds >= 0.05 && none.reasons[SF_STOP_REASON_OUT_OF_TIME] > 0);
     assert_true(none.samples - spent.samples <= 2 * 1024);
     /* With an hour more it goes on, until it is told to stop. */
     uint32_t stop = none.rounds + 2;
@@ -342,7 +342,7 @@ static void test_more_time_adds_to_what_was_spent(void **state) {
     sf_film *longer = render(scene, &options);
     sf_film_summary more = sf_film_summarize(longer);
     assert_true(more.rounds == stop && more.samples > none.samples && more.seconds >= 0.05);
-    assert_true(more.reasons[SF_STOP_OUT_OF_TIME] == 0 && more.reasons[SF_STOP_INTERRUPTED] > 0);
+    assert_true(more.reasons[SF_STOP_REASON_OUT_OF_TIME] == 0 && more.reasons[SF_STOP_REASON_INTERRUPTED] > 0);
     sf_film_destroy(first);
     sf_film_destroy(again);
     sf_film_destroy(longer);
@@ -355,7 +355,7 @@ static void test_what_differs_is_named_and_the_file_is_left(void **state) {
     sf_render_options made = options_for(24, 0);
     made.relative_tolerance = 0.1;
     made.max_spp = 128;
-    made.stop = SF_STOP_STANDARD_ERROR;
+    made.stop = SF_STOP_RULE_STANDARD_ERROR;
     made.seed = 1;
     made.checkpoint_path = FILE_NAME;
     sf_film_destroy(render(scene, &made));
@@ -648,7 +648,7 @@ static void test_replicates_merge_by_their_counts(void **state) {
         assert_true(fabs(found - mean / 224) <= 4 * 0x1p-24 * found);
         assert_true(fabs(width - sqrt(square) / 224) <= 4 * 0x1p-24 * width);
         assert_int_equal(((const uint32_t *)channel_data(merged, "samples"))[p], 224);
-        assert_int_equal(((const uint8_t *)channel_data(merged, "stop_reason"))[p], SF_STOP_FIXED);
+        assert_int_equal(((const uint8_t *)channel_data(merged, "stop_reason"))[p], SF_STOP_REASON_FIXED);
         double chained_width = (double)((const float *)channel_data(chained, "half_width"))[p];
         assert_true(fabs(chained_width - width) <= 4 * 0x1p-24 * width);
     }

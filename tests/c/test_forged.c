@@ -111,13 +111,13 @@ static sf_render_options kind_of_render(int kind) {
     if (kind == 0) o.start = 16;
     if (kind == 1) o.relative_tolerance = 0.02;
     if (kind == 2) o.relative_tolerance = 0.01;
-    if (kind == 2) o.stop = SF_STOP_STANDARD_ERROR;
+    if (kind == 2) o.stop = SF_STOP_RULE_STANDARD_ERROR;
     if (kind == 2) o.aovs = (1u << SF_AOV_COUNT) - 1;
     if (kind == 3) o.relmse = 1e-5;
     if (kind == 3) o.mask = mask;
     if (kind == 3) memcpy(o.crop, (uint32_t[]){1, 2, 13, 9}, sizeof o.crop);
     if (kind == 4) o.samples = 100 * PIXELS;
-    if (kind == 4) o.stop = SF_STOP_REPLICATES;
+    if (kind == 4) o.stop = SF_STOP_RULE_REPLICATES;
     if (kind == 5) o.relative_tolerance = 0.02;
     if (kind == 5) o.pixel_filter = SF_PIXEL_FILTER_LANCZOS;
     if (kind == 6) o.samples = 120 * PIXELS;

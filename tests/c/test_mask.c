@@ -13,7 +13,7 @@ static sf_render_options options_for(uint32_t spp) {
     options.width = options.height = SIZE;
     options.spp = spp;
     options.threads = 2;
-    options.stop = SF_STOP_STANDARD_ERROR;
+    options.stop = SF_STOP_RULE_STANDARD_ERROR;
     options.aovs = (1u << SF_AOV_COUNT) - 1;
     return options;
 }
@@ -53,7 +53,7 @@ static void assert_nothing_outside(const sf_film *film, const uint32_t crop[4], 
     size_t i = 0;
     for (uint32_t y = crop[1]; y < crop[3]; ++y)
         for (uint32_t x = crop[0]; x < crop[2]; ++x, ++i) {
-            assert_int_equal(reason[i] == SF_STOP_MASKED, !mask[y][x]);
+            assert_int_equal(reason[i] == SF_STOP_REASON_MASKED, !mask[y][x]);
             if (mask[y][x]) continue;
             assert_true(color[3 * i] == 0 && alpha[i] == 0 && half_b[3 * i] == 0 && samples[i] == 0);
             assert_true(half_width[i] == INFINITY && depth[i] == INFINITY);
@@ -112,8 +112,8 @@ static void test_summary_and_level_are_of_the_masks_pixels(void **state) {
     }
     assert_int_equal(summary.pixels, pixels);
     assert_int_equal(summary.samples, taken);
-    assert_int_equal(summary.reasons[SF_STOP_MASKED], 0);
-    assert_int_equal(summary.reasons[SF_STOP_MET] + summary.reasons[SF_STOP_MAX_SAMPLES], pixels);
+    assert_int_equal(summary.reasons[SF_STOP_REASON_MASKED], 0);
+    assert_int_equal(summary.reasons[SF_STOP_REASON_MET] + summary.reasons[SF_STOP_REASON_MAX_SAMPLES], pixels);
     assert_true(mask[summary.worst_y][summary.worst_x] && isfinite(summary.mean_half_width));
     assert_in_range(summary.traced_samples, summary.samples, cells * 64 * options.max_spp);
 
@@ -153,10 +153,10 @@ static void test_progress_counts_the_masks_pixels_and_those_that_met(void **stat
         memcpy(options.crop, (uint32_t[]){3, 5, 45, 41}, sizeof options.crop);
         sf_film *film = render(s.scene, &options);
         sf_film_summary summary = sf_film_summarize(film);
-        assert_true(summary.reasons[SF_STOP_MET] > 0 && summary.reasons[SF_STOP_MAX_SAMPLES] > 0);
+        assert_true(summary.reasons[SF_STOP_REASON_MET] > 0 && summary.reasons[SF_STOP_REASON_MAX_SAMPLES] > 0);
         assert_int_equal(last.pixels, summary.pixels);
         assert_int_equal(last.pixels_done, summary.pixels);
-        assert_int_equal(last.pixels_met, summary.reasons[SF_STOP_MET]);
+        assert_int_equal(last.pixels_met, summary.reasons[SF_STOP_REASON_MET]);
         assert_true(last.tolerance == summary.tolerance);
         sf_film_destroy(film);
     }

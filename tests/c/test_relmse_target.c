@@ -42,7 +42,7 @@ static void test_it_is_reached_and_every_pixel_met(void **state) {
         sf_film *film = render(scene, &options);
         sf_film_summary summary = sf_film_summarize(film);
         assert_true(summary.relmse <= goal && summary.relmse > 0);
-        assert_int_equal(summary.reasons[SF_STOP_MET], film_pixels(film));
+        assert_int_equal(summary.reasons[SF_STOP_REASON_MET], film_pixels(film));
         assert_true((double)summary.samples > samples);
         samples = (double)summary.samples;
         sf_film_destroy(film);
@@ -53,7 +53,7 @@ static void test_it_is_the_mean_of_what_the_half_widths_say(void **state) {
     const sf_scene *scene = ((lit_floor *)*state)->scene;
     sf_render_options options = options_for(0);
     options.spp = 64;
-    options.stop = SF_STOP_STANDARD_ERROR;
+    options.stop = SF_STOP_RULE_STANDARD_ERROR;
     options.pattern = SF_PATTERN_RANDOM;
     sf_film *film = render(scene, &options);
     const float *color = channel_data(film, "R"), *half_width = channel_data(film, "half_width");
@@ -97,7 +97,7 @@ static void test_it_ends_at_the_most_samples(void **state) {
     sf_film_summary summary = sf_film_summarize(film);
     const uint32_t *samples = channel_data(film, "samples");
     assert_true(summary.relmse > 1e-12);
-    assert_int_equal(summary.reasons[SF_STOP_MET], 0);
+    assert_int_equal(summary.reasons[SF_STOP_REASON_MET], 0);
     for (size_t i = 0; i < film_pixels(film); ++i) assert_int_equal(samples[i], 100);
     sf_film_destroy(film);
 }
@@ -114,7 +114,7 @@ static void test_an_early_end_says_so(void **state) {
     options.progress = stop_at_once;
     options.progress_user = &seen;
     sf_film *film = render(scene, &options);
-    assert_int_equal(sf_film_summarize(film).reasons[SF_STOP_INTERRUPTED], film_pixels(film));
+    assert_int_equal(sf_film_summarize(film).reasons[SF_STOP_REASON_INTERRUPTED], film_pixels(film));
     assert_true(seen > 1e-9 && seen < 1);
     sf_film_destroy(film);
 }

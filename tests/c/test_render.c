@@ -455,7 +455,7 @@ static void test_half_widths_of_independent_samples_cover_the_truth(void **state
     sf_scene *scene = spot_scene(&s, 0.4f, 0.1f, 1);
     sf_render_options options = options_for(64, 64);
     options.pattern = SF_PATTERN_RANDOM;
-    options.stop = SF_STOP_STANDARD_ERROR;
+    options.stop = SF_STOP_RULE_STANDARD_ERROR;
     double expected = lit_floor_radiance((double)0.4f, (double)0.1f);
     static const double confidences[] = {0.5, 0.95, 0.99};
     for (int i = 0; i < 3; ++i) {
@@ -479,7 +479,7 @@ static void test_adaptive_pixels_say_why_they_stopped(void **state) {
     lit_floor_create(&s, 1);
     sf_render_options options = options_for(64, 0);
     options.relative_tolerance = 0.02;
-    options.stop = SF_STOP_STANDARD_ERROR;
+    options.stop = SF_STOP_RULE_STANDARD_ERROR;
     options.min_spp = 48;
     options.max_spp = 500;
     sf_film *film = render(s.scene, &options);
@@ -492,14 +492,14 @@ static void test_adaptive_pixels_say_why_they_stopped(void **state) {
         ++counted[reason[i]];
         total += samples[i];
         assert_in_range(samples[i], 48, 500);
-        if (reason[i] == SF_STOP_MET) assert_true((double)half_width[i] <= summary.tolerance);
-        if (reason[i] == SF_STOP_MAX_SAMPLES) {
+        if (reason[i] == SF_STOP_REASON_MET) assert_true((double)half_width[i] <= summary.tolerance);
+        if (reason[i] == SF_STOP_REASON_MAX_SAMPLES) {
             assert_int_equal(samples[i], 500);
             assert_true((double)half_width[i] > summary.tolerance);
         }
     }
-    assert_true(counted[SF_STOP_MET] > 0 && counted[SF_STOP_MAX_SAMPLES] > 0);
-    assert_int_equal(counted[SF_STOP_MET] + counted[SF_STOP_MAX_SAMPLES], film_pixels(film));
+    assert_true(counted[SF_STOP_REASON_MET] > 0 && counted[SF_STOP_REASON_MAX_SAMPLES] > 0);
+    assert_int_equal(counted[SF_STOP_REASON_MET] + counted[SF_STOP_REASON_MAX_SAMPLES], film_pixels(film));
     assert_memory_equal(counted, summary.reasons, sizeof counted);
     assert_true(total == summary.samples && total == summary.traced_samples);
     assert_true(summary.tolerance == 0.02 * summary.level);
@@ -520,7 +520,7 @@ static void test_black_scene_stops_at_the_minimum(void **state) {
     sf_render_options options = options_for(16, 0);
     sf_film *film = render(scene, &options);
     sf_film_summary summary = sf_film_summarize(film);
-    assert_int_equal(summary.reasons[SF_STOP_MET], 256);
+    assert_int_equal(summary.reasons[SF_STOP_REASON_MET], 256);
     assert_int_equal(summary.samples, 256 * options.min_spp);
     assert_true(film_mean(film) == 0 && summary.level == 0);
     sf_film_destroy(film);
@@ -594,9 +594,9 @@ static void test_time_limit_is_kept_and_said(void **state) {
         sf_film *film = render(s.scene, &options);
         sf_film_summary summary = sf_film_summarize(film);
         /* Pixels that see no surface have half-width 0, which meets any tolerance. */
-        assert_int_equal(summary.reasons[SF_STOP_OUT_OF_TIME] + summary.reasons[SF_STOP_MET], 64 * 64);
-        assert_true(summary.reasons[SF_STOP_OUT_OF_TIME] > 2048);
-        if (!tolerance) assert_int_equal(summary.reasons[SF_STOP_MET], 0);
+        assert_int_equal(summary.reasons[SF_STOP_REASON_OUT_OF_TIME] + summary.reasons[SF_STOP_REASON_MET], 64 * 64);
+        assert_true(summary.reasons[SF_STOP_REASON_OUT_OF_TIME] > 2048);
+        if (!tolerance) assert_int_equal(summary.reasons[SF_STOP_REASON_MET], 0);
         assert_true(summary.seconds >= 0.1);
         assert_true(summary.seconds < 2); /* on a machine busy with other tests */
         sf_film_destroy(film);
@@ -616,7 +616,7 @@ static void test_progress_can_stop_the_render_which_keeps_what_it_has(void **sta
     options.progress_user = &rounds;
     sf_film *film = render(s.scene, &options);
     sf_film_summary summary = sf_film_summarize(film);
-    assert_int_equal(summary.reasons[SF_STOP_INTERRUPTED], 32 * 32);
+    assert_int_equal(summary.reasons[SF_STOP_REASON_INTERRUPTED], 32 * 32);
     assert_true(summary.samples > 0 && film_mean(film) > 0);
     sf_film_destroy(film);
     sf_scene_destroy(s.scene);

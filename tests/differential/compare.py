@@ -125,7 +125,7 @@ def draw_way(rng: np.random.Generator, world: World, frame: Frame) -> Way:
     }
     if small and rng.random() < 0.3 and not signed:
         render |= {"unbiased": True, "tolerance": 0.1, "min_spp": 16, "max_spp": 64}
-        render["stop"] = pick("dyadic", "replicates", "standard-error")
+        render["stop"] = pick("dyadic", "replicates", "standard_error")
         return Way(scene, render)
     few = 1, 2, 3, 4, 7, 8, 15, 16, 17
     render["spp"] = pick(128, 160) if signed else pick(*few, 31, 32, 33, 64, 128) if small else pick(*few)

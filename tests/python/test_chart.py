@@ -267,14 +267,14 @@ def test_pixels_of_a_scene(tmp_path: Path) -> None:
 
 
 def test_scenes_have_fixed_and_adaptive_on_one_chart() -> None:
-    made = sf.chart.scenes("penumbra", patterns="random", stops="standard-error", tolerances="0.2,0.1", quick=True)
+    made = sf.chart.scenes("penumbra", patterns="random", stops="standard_error", tolerances="0.2,0.1", quick=True)
     speed, calibration, *_ = made.panels
-    assert [s.name for s in speed.series] == ["random, fixed", "random, standard-error", "Pareto front"]
+    assert [s.name for s in speed.series] == ["random, fixed", "random, standard_error", "Pareto front"]
     asked, got = (np.asarray(v, float) for v in (calibration.series[0].x, calibration.series[0].y))
     assert asked.tolist() == [0.1, 0.2]
     # The rule is right for independent samples: an error above the tolerance / 1.96 would be news.
     assert (got < asked / 1.96).all()
-    [row] = [r for r in made.rows if r["method"] == "random, standard-error" and r["n"] == 0.1]
+    [row] = [r for r in made.rows if r["method"] == "random, standard_error" and r["n"] == 0.1]
     assert 0.85 < row["coverage_median"] < 0.99  # of 0.95 asked, less on pixels of few, skewed samples
     assert len(made.pictures) == 4
     assert all(data.startswith(b"\x89PNG") for data in made.pictures.values())

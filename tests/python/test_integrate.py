@@ -287,7 +287,7 @@ def test_a_known_range_holds_at_every_look() -> None:
 
 def test_max_samples_stops_it() -> None:
     r = sf.integrate(circle, 2, atol=1e-9, max_samples=5000)
-    assert r.stop_reason == "max samples"
+    assert r.stop_reason == "max_samples"
     assert r.samples == 4096
     assert r.half_width > 1e-9
 

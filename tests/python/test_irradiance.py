@@ -119,7 +119,7 @@ BOUND = 4 * math.sqrt(0.95 * 0.05) / SIZE
 def test_standard_errors_of_independent_samples_cover_at_their_confidence(name: str) -> None:
     """z s / sqrt(n) of 256 samples, short of Student's t by 0.001. Not by surface rays: they meet these
     lights with a probability down to 0.003, and such an interval fails where they have met none."""
-    covered, z = measure(name, "random", "standard-error", "both")
+    covered, z = measure(name, "random", "standard_error", "both")
     assert 0.95 - BOUND - 0.001 < covered < 0.95 + BOUND
     assert abs(z) < 5
 

@@ -106,7 +106,7 @@ def test_an_edge_has_the_filters_step_response_within_its_half_width(pixel_filte
         expected = step_response(pixel_filter, edge - centre)
         near = np.abs(edge - centre) < (0.45 if pixel_filter == "box" else 0.9)
         image = sf.render(
-            scene, 24, 24, spp=1024, pixel_filter=pixel_filter, pattern="random", stop="standard-error", seed=seed
+            scene, 24, 24, spp=1024, pixel_filter=pixel_filter, pattern="random", stop="standard_error", seed=seed
         )
         covered.append((np.abs(image.color[..., 0] - expected) <= image.half_width)[:, near])
         # A scrambled net's variance for a step is at most that of a 32 x 32 jittered grid, of whose 1,024 cells
@@ -126,7 +126,7 @@ def test_a_ramp_keeps_its_mean(pixel_filter: str) -> None:
     edges = np.arange(-24 * 8, 24 * 8 + 1) / 8
     scene = plane_scene([strip(a, b, 1 + (a + b) / 50) for a, b in itertools.pairwise(edges)])
     expected = 1 + (np.arange(24) + 0.5 - HALF) / 25
-    image = sf.render(scene, 24, 24, spp=256, pixel_filter=pixel_filter, pattern="random", stop="standard-error")
+    image = sf.render(scene, 24, 24, spp=256, pixel_filter=pixel_filter, pattern="random", stop="standard_error")
     error = image.color[..., 0] - expected
     share = (np.abs(error) <= image.half_width).mean()
     assert abs(share - 0.95) < 4 * np.sqrt(0.95 * 0.05 / error.size)
@@ -152,7 +152,7 @@ def test_threads_tiles_crops_and_masks_change_no_bit(penumbra: sf.Scene, pixel_f
 
 
 @pytest.mark.parametrize("pixel_filter", SIGNED)
-@pytest.mark.parametrize("stop", ["dyadic", "replicates", "standard-error"])
+@pytest.mark.parametrize("stop", ["dyadic", "replicates", "standard_error"])
 def test_a_stopped_render_goes_on_bit_for_bit(penumbra: sf.Scene, tmp_path: Path, pixel_filter: str, stop: str) -> None:
     options: dict[str, Any] = {"tolerance": 0.03, "max_spp": 512, "pixel_filter": pixel_filter, "stop": stop}
     whole = sf.render(penumbra, 32, 32, **options)

@@ -16,8 +16,8 @@ import pytest
 
 import sunfleck as sf
 
-MET, MAX_SAMPLES = sf.STOP_REASONS.index("met"), sf.STOP_REASONS.index("max samples")
-OUT_OF_TIME, INTERRUPTED = sf.STOP_REASONS.index("out of time"), sf.STOP_REASONS.index("interrupted")
+MET, MAX_SAMPLES = sf.STOP_REASONS.index("met"), sf.STOP_REASONS.index("max_samples")
+OUT_OF_TIME, INTERRUPTED = sf.STOP_REASONS.index("out_of_time"), sf.STOP_REASONS.index("interrupted")
 
 
 def assert_same_film(a: sf.Image, b: sf.Image) -> None:
@@ -141,18 +141,18 @@ COUNTS: dict[str, Any] = {
     ("reasons", "options", "line"),
     [
         (
-            {"met": 987, "max samples": 13},
+            {"met": 987, "max_samples": 13},
             {"relative": True},
             "98.7 % of pixels met 0.01 at 95 %; worst 0.03 at (12, 200)",
         ),
         ({"met": 1000}, {}, "100 % of pixels met 0.005 at 95 %; worst 0.015 at (12, 200)"),
         (
-            {"met": 999_999, "max samples": 1},
+            {"met": 999_999, "max_samples": 1},
             {"pixels": 1_000_000, "confidence": 0.999},
             "99.9 % of pixels met 0.005 at 99.9 %; worst 0.015 at (12, 200)",
         ),
         (
-            {"met": 500, "out of time": 499, "suspicious": 1},
+            {"met": 500, "out_of_time": 499, "suspicious": 1},
             {"relative": True},
             "50.0 % of pixels met 0.01 at 95 %, 49.9 % out of time; worst 0.03 at (12, 200)",
         ),
@@ -167,7 +167,7 @@ COUNTS: dict[str, Any] = {
             "64 samples a pixel; half-width at 95 %: mean 0.002, worst 0.015 at (12, 200)",
         ),
         (
-            {"out of time": 1000},
+            {"out_of_time": 1000},
             {"tolerance": 0.0, "samples": 64_512},
             "64.51 samples a pixel, out of time; half-width at 95 %: mean 0.002, worst 0.015 at (12, 200)",
         ),
@@ -528,7 +528,7 @@ def test_ctrl_c_returns_the_partial_picture_within_half_a_second(size: int, opti
         ({"pattern": "lattice"}, ValueError, f"lattice.*{', '.join(sf.RENDER_PATTERNS)}$"),
         ({"pattern": None}, TypeError, "pattern"),
         ({"pixel_filter": "sinc"}, ValueError, "sinc.*box, tent, gaussian.*lanczos"),
-        ({"stop": "never"}, ValueError, "never.*standard-error"),
+        ({"stop": "never"}, ValueError, "never.*standard_error"),
         ({"seeds": "time"}, ValueError, "time.*pixel, thread, shared"),
         ({"seed": -1}, ValueError, "seed is -1"),
         ({"seed": 2**64}, ValueError, "seed"),

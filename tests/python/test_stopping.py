@@ -11,7 +11,7 @@ import pytest
 import sunfleck as sf
 
 SUSPICIOUS = sf.STOP_REASONS.index("suspicious")
-RULE: dict[str, Any] = {"tolerance": 0.3, "stop": "standard-error", "min_spp": 16, "max_spp": 512, "pattern": "random"}
+RULE: dict[str, Any] = {"tolerance": 0.3, "stop": "standard_error", "min_spp": 16, "max_spp": 512, "pattern": "random"}
 
 
 def level(image: sf.Image) -> Any:
@@ -30,7 +30,7 @@ def test_a_pilot_decides_as_the_plain_render_does(penumbra: sf.Scene) -> None:
     assert both.metadata["unbiased"] == "true"
 
 
-@pytest.mark.parametrize("stop", ["dyadic", "replicates", "standard-error"])
+@pytest.mark.parametrize("stop", ["dyadic", "replicates", "standard_error"])
 def test_the_second_set_is_independent_of_the_pilot(penumbra: sf.Scene, stop: str) -> None:
     options: dict[str, Any] = {"tolerance": 0.1, "stop": stop, "pattern": "random"}
     truth = level(sf.render(penumbra, 40, 40, spp=16384, seed=9))
@@ -93,7 +93,7 @@ def test_rare_light_is_told(penumbra: sf.Scene) -> None:
 
 
 def test_a_crop_to_a_tolerance_is_exact_where_no_neighbour_counts(penumbra: sf.Scene) -> None:
-    options: dict[str, Any] = {"tolerance": sf.Tolerance(absolute=0.004), "stop": "standard-error"}
+    options: dict[str, Any] = {"tolerance": sf.Tolerance(absolute=0.004), "stop": "standard_error"}
     whole = sf.render(penumbra, 64, 64, **options)
     part = sf.render(penumbra, 64, 64, crop=(20, 20, 44, 44), **options)
     assert np.array_equal(whole.color[20:44, 20:44], part.color)

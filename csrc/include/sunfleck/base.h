@@ -21,6 +21,13 @@
 #error "Sunfleck needs floats that are computed as floats (FLT_EVAL_METHOD 0); on i686 compile with -msse2 -mfpmath=sse"
 #endif
 
+/* What a shared library exports. Everything else in it is hidden; a static one has nothing to say. */
+#if defined(SF_BUILD_SHARED) && defined(__GNUC__)
+#define SF_API __attribute__((visibility("default")))
+#else
+#define SF_API
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -30,7 +37,7 @@ extern "C" {
 #define SF_VERSION_PATCH 0
 
 /* The version of the library that is linked, "major.minor.patch". */
-const char *sf_version(void);
+SF_API const char *sf_version(void);
 
 /* What became of a call. Only what can fail from outside returns one. */
 typedef enum sf_status {
@@ -52,22 +59,22 @@ typedef struct sf_error {
 } sf_error;
 
 /* "ok", "invalid value", … ; never NULL. */
-const char *sf_status_name(sf_status status);
+SF_API const char *sf_status_name(sf_status status);
 
-/* Whether `name` is the one `known`, upper and lower case of ASCII being alike; 0 where one is NULL.
- * Every look-up by name in the library compares so. */
-int sf_name_matches(const char *name, const char *known);
+/* Whether `name` is the one `known`, capital letters of ASCII being as small ones, "-" and " " as "_"; 0 where one
+ * is NULL. Every look-up by name in the library compares so. */
+SF_API int sf_name_matches(const char *name, const char *known);
 
 /* The instruction set at which bulk kernels run. The core's results are the same bits
- * on every level. */
+ * on every one. */
 typedef enum sf_isa { SF_ISA_BASELINE = 0, SF_ISA_AVX2, SF_ISA_AVX512 } sf_isa;
 
 /* The highest level that this processor and this build have; the environment variable
  * SUNFLECK_ISA (baseline, avx2, avx512) lowers it. Read at each call: about 0.1 µs. */
-sf_isa sf_isa_active(void);
+SF_API sf_isa sf_isa_active(void);
 
 /* "baseline", "avx2", "avx512"; never NULL. */
-const char *sf_isa_name(sf_isa isa);
+SF_API const char *sf_isa_name(sf_isa isa);
 
 /* A float in [0,1), never 1, from the top 24 bits: 24 bits are what a float's significand
  * holds, so the integer converts exactly, and the product with 2^-24 is exact too. The

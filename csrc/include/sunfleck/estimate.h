@@ -79,8 +79,8 @@ static inline double sf_moments_standard_error(const sf_moments *m) {
 
 /* Adds x[0 .. count - 1]: moments of aligned blocks of 256 are merged pairwise, then into `m`, so
  * that the error grows as log(count). Costs about one pass over the memory. */
-void sf_moments_add_f32(sf_moments *m, size_t count, const float *x);
-void sf_moments_add_f64(sf_moments *m, size_t count, const double *x);
+SF_API void sf_moments_add_f32(sf_moments *m, size_t count, const float *x);
+SF_API void sf_moments_add_f64(sf_moments *m, size_t count, const double *x);
 
 /* ---- colours: a vector mean with one scalar sum of squares, the lecture's rule ---- */
 
@@ -129,8 +129,8 @@ static inline double sf_vector_moments_standard_error(const sf_vector_moments *m
 }
 
 /* Adds `count` rows of three, packed; as sf_moments_add_f32. */
-void sf_vector_moments_add_f32(sf_vector_moments *m, size_t count, const float *x);
-void sf_vector_moments_add_f64(sf_vector_moments *m, size_t count, const double *x);
+SF_API void sf_vector_moments_add_f32(sf_vector_moments *m, size_t count, const float *x);
+SF_API void sf_vector_moments_add_f64(sf_vector_moments *m, size_t count, const double *x);
 
 /* ---- colours, each channel for itself ---- */
 
@@ -177,8 +177,8 @@ static inline sf_moments sf_channel_moments_at(const sf_channel_moments *m, int 
 }
 
 /* Adds `count` rows of three, packed; as sf_moments_add_f32. */
-void sf_channel_moments_add_f32(sf_channel_moments *m, size_t count, const float *x);
-void sf_channel_moments_add_f64(sf_channel_moments *m, size_t count, const double *x);
+SF_API void sf_channel_moments_add_f32(sf_channel_moments *m, size_t count, const float *x);
+SF_API void sf_channel_moments_add_f64(sf_channel_moments *m, size_t count, const double *x);
 
 /* ---- weighted moments (West 1979) ---- */
 
@@ -230,7 +230,7 @@ static inline double sf_weighted_moments_standard_error(const sf_weighted_moment
 }
 
 /* Adds `count` samples with their weights, in order. */
-void sf_weighted_moments_add_f64(sf_weighted_moments *m, size_t count, const double *x, const double *weights);
+SF_API void sf_weighted_moments_add_f64(sf_weighted_moments *m, size_t count, const double *x, const double *weights);
 
 /* ---- the lecture's running sums ---- */
 
@@ -258,8 +258,8 @@ static inline void sf_running_sums_f32_add(sf_running_sums_f32 *r, float f) {
 }
 
 /* Adds count values in order; floats are added to the float sums as they are. */
-void sf_running_sums_add_f64(sf_running_sums *r, size_t count, const double *f);
-void sf_running_sums_f32_add_f32(sf_running_sums_f32 *r, size_t count, const float *f);
+SF_API void sf_running_sums_add_f64(sf_running_sums *r, size_t count, const double *f);
+SF_API void sf_running_sums_f32_add_f32(sf_running_sums_f32 *r, size_t count, const float *f);
 
 /* s/N - mean^2, negative where the subtraction has lost it; the error is then NaN, as it would
  * be on the lecture's slide. Samples that are not finite spoil the sums for good. */
@@ -284,11 +284,11 @@ static inline float sf_running_sums_f32_standard_error(const sf_running_sums_f32
 
 /* The z below which a standard normal falls with probability p; relative error at most 1e-13.
  * -infinity at 0, infinity at 1, NaN outside [0,1]. */
-double sf_normal_quantile(double p);
+SF_API double sf_normal_quantile(double p);
 
 /* The same of Student's t with `dof` > 0 degrees of freedom (need not be whole; infinity gives
  * the normal); relative error at most 1e-10. NaN for dof <= 0 or p outside [0,1]. */
-double sf_student_t_quantile(double p, double dof);
+SF_API double sf_student_t_quantile(double p, double dof);
 
 /* The factor z (t, with dof) of a two-sided interval: the quantile at (1 + confidence) / 2, for
  * confidence in (0,1). */
@@ -299,7 +299,7 @@ static inline double sf_student_t_factor(double confidence, double dof) {
 
 /* Half-width of the mean's interval by Student's t: for independent samples that are near normal,
  * above all the means of replicates or of batches. Infinity below two samples. */
-double sf_moments_half_width(const sf_moments *m, double confidence);
+SF_API double sf_moments_half_width(const sf_moments *m, double confidence);
 
 /* ---- batch means and replicates ---- */
 
@@ -325,7 +325,7 @@ static inline void sf_batch_means_add(sf_batch_means *b, double x) {
     b->batch.count = 0;
     b->batch.mean = b->batch.m2 = 0.0;
 }
-void sf_batch_means_add_f64(sf_batch_means *b, size_t count, const double *x);
+SF_API void sf_batch_means_add_f64(sf_batch_means *b, size_t count, const double *x);
 
 /* Of the full batches: the mean, and the half-width of its interval by Student's t. */
 static inline double sf_batch_means_mean(const sf_batch_means *b) { return sf_moments_mean(&b->means); }
@@ -342,7 +342,7 @@ static inline double sf_batch_means_half_width(const sf_batch_means *b, double c
  * one count fixed ahead: the empirical Bernstein bound, Maurer & Pontil 2009, theorem 4, on both
  * sides (each with half the error). With variance s^2 and L = log(4 / (1 - confidence)):
  * sqrt(2 s^2 L / n) + 7 range L / (3 (n - 1)). Infinity below two samples. */
-double sf_moments_bernstein_half_width(const sf_moments *m, double range, double confidence);
+SF_API double sf_moments_bernstein_half_width(const sf_moments *m, double range, double confidence);
 
 /* A confidence sequence for the mean of samples in [low, high]: an interval after every sample, all
  * of which hold at once with the confidence, so that one may look at any time and stop when one
@@ -372,14 +372,14 @@ typedef struct sf_confidence_sequence {
 } sf_confidence_sequence;
 
 /* low < high, both finite, confidence in (0,1), target finite and >= 0. */
-sf_status sf_confidence_sequence_init(sf_confidence_sequence *c, double low, double high, double confidence,
-                                      double target, sf_error *error);
-void sf_confidence_sequence_add(sf_confidence_sequence *c, double x);
-void sf_confidence_sequence_add_f64(sf_confidence_sequence *c, size_t count, const double *x);
+SF_API sf_status sf_confidence_sequence_init(sf_confidence_sequence *c, double low, double high, double confidence,
+                                             double target, sf_error *error);
+SF_API void sf_confidence_sequence_add(sf_confidence_sequence *c, double x);
+SF_API void sf_confidence_sequence_add_f64(sf_confidence_sequence *c, size_t count, const double *x);
 
 /* The interval; [low, high] before the first sample. */
-double sf_confidence_sequence_lower(const sf_confidence_sequence *c);
-double sf_confidence_sequence_upper(const sf_confidence_sequence *c);
+SF_API double sf_confidence_sequence_lower(const sf_confidence_sequence *c);
+SF_API double sf_confidence_sequence_upper(const sf_confidence_sequence *c);
 
 /* The interval for the mean of `count` samples in [low, high], the count fixed ahead, by the hedged
  * capital process (same paper, theorem 3, with its bets for a fixed count, truncated at 3/4 of what
@@ -388,8 +388,8 @@ double sf_confidence_sequence_upper(const sf_confidence_sequence *c);
  * Where the samples contradict every mean (no likelier than an error), lower is above upper.
  *
  * Refuses a sample outside [low, high], or not finite; allocates 2 count doubles while it runs. */
-sf_status sf_betting_interval_f64(size_t count, const double *x, double low, double high, double confidence,
-                                  double *lower, double *upper, sf_error *error);
+SF_API sf_status sf_betting_interval_f64(size_t count, const double *x, double low, double high, double confidence,
+                                         double *lower, double *upper, sf_error *error);
 
 #include "sunfleck/exact_end.h"
 

@@ -42,17 +42,17 @@ typedef enum sf_stop_rule {
      * running vector mean and the scalar sum of squares. Kept as the baseline: points of a
      * low-discrepancy pattern are not independent (it then overstates), and a pixel that has
      * seen nothing has variance zero (it then stops, wrongly). */
-    SF_STOP_STANDARD_ERROR = 0,
+    SF_STOP_RULE_STANDARD_ERROR = 0,
 
     /* Eight independent replicates of the pattern a pixel, and Student's t over their means. Looks
      * at 128, 256, 512, … samples. The plainest of arguments, at the price of the pattern's
      * strength at n / 8 points. */
-    SF_STOP_REPLICATES,
+    SF_STOP_RULE_REPLICATES,
 
     /* The default. Differences between the halves of one sequence, the halves' own halves, … four
      * levels down, whose decay says how variance falls with n; pooled over the pixels around. Looks
      * at 32, 64, 128, … samples, where min_spp allows. Coverage and cost measured: docs/render.md. */
-    SF_STOP_DYADIC
+    SF_STOP_RULE_DYADIC
 } sf_stop_rule;
 
 /* How threads come by their random numbers. */
@@ -65,28 +65,28 @@ typedef enum sf_seed_policy {
 
 /* Why a pixel stopped. */
 typedef enum sf_stop_reason {
-    SF_STOP_FIXED = 0,   /* the fixed count asked for was taken */
-    SF_STOP_MET,         /* half-width within the tolerance; or the goal of the whole picture reached */
-    SF_STOP_MAX_SAMPLES, /* max_spp reached first */
-    SF_STOP_OUT_OF_TIME, /* the time limit came first */
-    SF_STOP_SUSPICIOUS,  /* samples that were not finite were dropped; or, by the rule dyadic, a heavy
+    SF_STOP_REASON_FIXED = 0,   /* the fixed count asked for was taken */
+    SF_STOP_REASON_MET,         /* half-width within the tolerance; or the goal of the whole picture reached */
+    SF_STOP_REASON_MAX_SAMPLES, /* max_spp reached first */
+    SF_STOP_REASON_OUT_OF_TIME, /* the time limit came first */
+    SF_STOP_REASON_SUSPICIOUS,  /* samples that were not finite were dropped; or, by the rule dyadic, a heavy
                             tail was seen: light is rare around the pixel, which has seen less of it
                             than its neighbours, and was taken to be less certain than it looked; it
                             ended by max_spp, time or budget */
-    SF_STOP_INTERRUPTED, /* the caller asked to stop */
-    SF_STOP_MASKED,      /* the mask leaves the pixel out */
+    SF_STOP_REASON_INTERRUPTED, /* the caller asked to stop */
+    SF_STOP_REASON_MASKED,      /* the mask leaves the pixel out */
     SF_STOP_REASON_COUNT
 } sf_stop_reason;
 
-/* The names of these enumerations, "box", "standard-error", "pixel", "met", …; NULL for a
+/* The names of these enumerations, "box", "standard_error", "pixel", "met", …; NULL for a
  * value beyond the last, so that they can be listed. */
-const char *sf_pixel_filter_name(sf_pixel_filter filter);
-const char *sf_stop_rule_name(sf_stop_rule rule);
-const char *sf_seed_policy_name(sf_seed_policy policy);
-const char *sf_stop_reason_name(sf_stop_reason reason);
+SF_API const char *sf_pixel_filter_name(sf_pixel_filter filter);
+SF_API const char *sf_stop_rule_name(sf_stop_rule rule);
+SF_API const char *sf_seed_policy_name(sf_seed_policy policy);
+SF_API const char *sf_stop_reason_name(sf_stop_reason reason);
 
 /* Whether the renderer takes the pattern: not 0 for uniform, random, jittered, halton and sobol. */
-int sf_render_takes_pattern(sf_pattern pattern);
+SF_API int sf_render_takes_pattern(sf_pattern pattern);
 
 /* What a film can hold beside the colours, where it is asked for: arbitrary output variables.
  *
@@ -108,7 +108,7 @@ typedef enum sf_aov {
                           negative lobes but for a part of the half-width) */
     SF_AOV_COUNT
 } sf_aov;
-const char *sf_aov_name(sf_aov aov); /* "albedo", …; NULL beyond the last */
+SF_API const char *sf_aov_name(sf_aov aov); /* "albedo", …; NULL beyond the last */
 
 /* How far a render is: given to the progress callback. */
 typedef struct sf_progress {
@@ -205,18 +205,18 @@ typedef struct sf_render_options {
                           1 % of the time; no bit of the film depends on it */
 } sf_render_options;
 
-sf_render_options sf_render_options_default(void);
+SF_API sf_render_options sf_render_options_default(void);
 
 typedef struct sf_film sf_film;
 
 /* The film that a checkpoint holds: pixels that had not stopped are marked interrupted. Fails with
  * SF_STATUS_IO where the file can't be read, is damaged, or is no checkpoint. Thread-safe. */
-sf_status sf_film_load(const char *path, sf_film **film, sf_error *error);
+SF_API sf_status sf_film_load(const char *path, sf_film **film, sf_error *error);
 
 /* Writes the film whole, some 120 bytes a pixel, beside and renamed: sf_film_load gives it back bit for bit,
  * but for the summary's work_seconds, and it merges as before. A render does not go on from such a file.
  * SF_STATUS_IO where it can't be written; whatever was at `path` is then still there. Thread-safe. */
-sf_status sf_film_save(const sf_film *film, const char *path, sf_error *error);
+SF_API sf_status sf_film_save(const sf_film *film, const char *path, sf_error *error);
 
 /* One film of several of the same scene, frame size, pattern, pixel filter, stop rule and confidence:
  * replicates (other seeds over the same pixels), tiles (crops that together fill a rectangle), or
@@ -229,10 +229,10 @@ sf_status sf_film_save(const sf_film *film, const char *path, sf_error *error);
  * Refuses films that differ in what is named above, that have a seed in common where they overlap
  * (their samples are the same), and crops that leave a gap: SF_STATUS_INVALID_VALUE. The films stay
  * the caller's. Thread-safe. */
-sf_status sf_film_merge(const sf_film *const *films, size_t count, sf_film **merged, sf_error *error);
+SF_API sf_status sf_film_merge(const sf_film *const *films, size_t count, sf_film **merged, sf_error *error);
 
 /* Frees the film; NULL is allowed. Its memory, if at most 64 MiB, is kept for the next film of its size. */
-void sf_film_destroy(sf_film *film);
+SF_API void sf_film_destroy(sf_film *film);
 
 /* One channel of a film: an array of rows, top first. */
 typedef enum sf_channel_type { SF_CHANNEL_FLOAT32 = 0, SF_CHANNEL_UINT32, SF_CHANNEL_UINT8 } sf_channel_type;
@@ -247,18 +247,18 @@ typedef struct sf_channel {
 } sf_channel;
 
 /* The film's own size: the crop's. */
-uint32_t sf_film_width(const sf_film *film);
-uint32_t sf_film_height(const sf_film *film);
+SF_API uint32_t sf_film_width(const sf_film *film);
+SF_API uint32_t sf_film_height(const sf_film *film);
 
 /* The list that every image writer walks. R, G, B interleave (pixel_stride 12); A is the share
  * of samples that hit a surface; half_width bounds the error of (R+G+B)/3 at the confidence
  * asked for, infinity where fewer than two samples were taken; stop_reason holds sf_stop_reason. */
-size_t sf_film_channel_count(const sf_film *film);
-sf_channel sf_film_channel(const sf_film *film, size_t index);
+SF_API size_t sf_film_channel_count(const sf_film *film);
+SF_API sf_channel sf_film_channel(const sf_film *film, size_t index);
 
 /* The first channel of an AOV, and how many it has; they interleave, as R, G, B do. 0, and *first
  * as it was, for one that was not asked for. */
-int sf_film_aov(const sf_film *film, sf_aov aov, sf_channel *first);
+SF_API int sf_film_aov(const sf_film *film, sf_aov aov, sf_channel *first);
 
 /* One attribute: every option as it was used (chosen defaults filled in), the seed, version,
  * instruction set, scene hash, and what came of it. */
@@ -266,8 +266,8 @@ typedef struct sf_attribute {
     const char *name;
     const char *text; /* as text in every case; numbers round-trip */
 } sf_attribute;
-size_t sf_film_attribute_count(const sf_film *film);
-sf_attribute sf_film_attribute(const sf_film *film, size_t index);
+SF_API size_t sf_film_attribute_count(const sf_film *film);
+SF_API sf_attribute sf_film_attribute(const sf_film *film, size_t index);
 
 /* What a thread does. */
 typedef enum sf_work {
@@ -285,7 +285,7 @@ typedef enum sf_work {
 } sf_work;
 /* "coordinates", "camera", "camera rays", "shadow rays", "surface rays", "vertices", "light", "surface",
  * "sums", "film"; NULL for a number beyond. */
-const char *sf_work_name(sf_work work);
+SF_API const char *sf_work_name(sf_work work);
 
 /* What a render came to, over the film's pixels; those that a mask leaves out count nowhere. */
 typedef struct sf_film_summary {
@@ -308,7 +308,7 @@ typedef struct sf_film_summary {
     double work_seconds[SF_WORK_COUNT]; /* of all threads, by sf_work; 0 unless options.profile. What is left of
                                            threads * seconds is decisions, their barriers, and waiting */
 } sf_film_summary;
-sf_film_summary sf_film_summarize(const sf_film *film);
+SF_API sf_film_summary sf_film_summarize(const sf_film *film);
 
 #ifdef __cplusplus
 }

@@ -22,7 +22,7 @@ extern "C" {
  * The file is written beside and renamed, so that a failure leaves whatever was there.
  * Errors: SF_STATUS_INVALID_VALUE for another ending, SF_STATUS_IO with OpenImageIO's reason.
  * Thread-safe on distinct paths. */
-sf_status sf_image_write(const sf_film *film, const char *path, sf_error *error);
+SF_API sf_status sf_image_write(const sf_film *film, const char *path, sf_error *error);
 
 #ifdef __cplusplus
 }

@@ -52,8 +52,8 @@ typedef enum sf_integral_stop {
     SF_INTEGRAL_STOP_COUNT
 } sf_integral_stop;
 
-/* "met", "max samples", "interrupted", "suspicious"; NULL beyond. */
-const char *sf_integral_stop_name(sf_integral_stop stop);
+/* "met", "max_samples", "interrupted", "suspicious"; NULL beyond. */
+SF_API const char *sf_integral_stop_name(sf_integral_stop stop);
 
 #define SF_INTEGRATE_MAX_REPLICATES 1024
 #define SF_INTEGRATE_MAX_LOOKS 128
@@ -82,7 +82,7 @@ typedef struct sf_integrate_options {
                              of values needs finite bounds; it is the function's, before the volume */
 } sf_integrate_options;
 
-sf_integrate_options sf_integrate_options_default(void);
+SF_API sf_integrate_options sf_integrate_options_default(void);
 
 /* What was known at a look. */
 typedef struct sf_integral_look {
@@ -129,14 +129,14 @@ typedef struct sf_integral {
  *
  * Calls the function with blocks of about 8,192 points. Refuses bad options before any call;
  * thread-safe if the function is. */
-sf_status sf_integrate(sf_integrand function, void *user, const sf_integrate_options *options, sf_integral *result,
-                       sf_error *error);
+SF_API sf_status sf_integrate(sf_integrand function, void *user, const sf_integrate_options *options,
+                              sf_integral *result, sf_error *error);
 
 /* The same for a function of several components, on the same points: results[0 .. components - 1],
  * each with its own value, half-width, history and stop. Goes on until every component has met the
  * tolerance; each half-width holds with the confidence for itself, not all at once. */
-sf_status sf_integrate_vector(sf_integrand function, void *user, const sf_integrate_options *options,
-                              uint32_t components, sf_integral *results, sf_error *error);
+SF_API sf_status sf_integrate_vector(sf_integrand function, void *user, const sf_integrate_options *options,
+                                     uint32_t components, sf_integral *results, sf_error *error);
 
 #ifdef __cplusplus
 }

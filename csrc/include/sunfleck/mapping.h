@@ -68,16 +68,16 @@ typedef enum sf_mapping {
 } sf_mapping;
 
 /* "pixel_box", …, and a line about each; NULL beyond the last, so that they can be listed. */
-const char *sf_mapping_name(sf_mapping mapping);
-const char *sf_mapping_description(sf_mapping mapping);
+SF_API const char *sf_mapping_name(sf_mapping mapping);
+SF_API const char *sf_mapping_description(sf_mapping mapping);
 
 /* The mapping called `name`; the error lists the names. */
-sf_status sf_mapping_find(const char *name, sf_mapping *mapping, sf_error *error);
+SF_API sf_status sf_mapping_find(const char *name, sf_mapping *mapping, sf_error *error);
 
 /* Values per point: of u (2 for every mapping so far) and of x (2 or 3); 0 for an unknown
  * mapping. */
-size_t sf_mapping_input_width(sf_mapping mapping);
-size_t sf_mapping_output_width(sf_mapping mapping);
+SF_API size_t sf_mapping_input_width(sf_mapping mapping);
+SF_API size_t sf_mapping_output_width(sf_mapping mapping);
 
 /* A parameter of a mapping, in the order in which they follow the points. */
 typedef struct sf_mapping_parameter {
@@ -88,8 +88,8 @@ typedef struct sf_mapping_parameter {
     const char *range;    /* the values allowed, in words: "positive and finite", … */
 } sf_mapping_parameter;
 
-size_t sf_mapping_parameter_count(sf_mapping mapping);
-sf_mapping_parameter sf_mapping_parameter_at(sf_mapping mapping, size_t index); /* below the count */
+SF_API size_t sf_mapping_parameter_count(sf_mapping mapping);
+SF_API sf_mapping_parameter sf_mapping_parameter_at(sf_mapping mapping, size_t index); /* below the count */
 
 #define SF_MAPPING_MAX_PARAMETERS 4
 
@@ -106,24 +106,32 @@ sf_mapping_parameter sf_mapping_parameter_at(sf_mapping mapping, size_t index); 
  * before anything is written, refuses what is not, naming the point, the value and the range. It
  * costs 0.09 ns a value with AVX-512 (docs/mapping.md).
  * Results are the inline functions' own, bit for bit (float); double has the same formulas. */
-sf_status sf_mapping_sample_fill_f32(sf_mapping mapping, size_t count, const float *u, const float *const *parameters,
-                                     const size_t *strides, float *x, sf_error *error);
-sf_status sf_mapping_sample_fill_f64(sf_mapping mapping, size_t count, const double *u, const double *const *parameters,
-                                     const size_t *strides, double *x, sf_error *error);
-sf_status sf_mapping_pdf_fill_f32(sf_mapping mapping, size_t count, const float *x, const float *const *parameters,
-                                  const size_t *strides, float *pdf, sf_error *error);
-sf_status sf_mapping_pdf_fill_f64(sf_mapping mapping, size_t count, const double *x, const double *const *parameters,
-                                  const size_t *strides, double *pdf, sf_error *error);
+SF_API sf_status sf_mapping_sample_fill_f32(sf_mapping mapping, size_t count, const float *u,
+                                            const float *const *parameters, const size_t *strides, float *x,
+                                            sf_error *error);
+SF_API sf_status sf_mapping_sample_fill_f64(sf_mapping mapping, size_t count, const double *u,
+                                            const double *const *parameters, const size_t *strides, double *x,
+                                            sf_error *error);
+SF_API sf_status sf_mapping_pdf_fill_f32(sf_mapping mapping, size_t count, const float *x,
+                                         const float *const *parameters, const size_t *strides, float *pdf,
+                                         sf_error *error);
+SF_API sf_status sf_mapping_pdf_fill_f64(sf_mapping mapping, size_t count, const double *x,
+                                         const double *const *parameters, const size_t *strides, double *pdf,
+                                         sf_error *error);
 /* What each point counts: 1, but for filters with negative lobes, whose |f| is sampled: the sign of
  * f times the integral of |f| over that of f. */
-sf_status sf_mapping_weight_fill_f32(sf_mapping mapping, size_t count, const float *x, const float *const *parameters,
-                                     const size_t *strides, float *weight, sf_error *error);
-sf_status sf_mapping_weight_fill_f64(sf_mapping mapping, size_t count, const double *x, const double *const *parameters,
-                                     const size_t *strides, double *weight, sf_error *error);
-sf_status sf_mapping_invert_fill_f32(sf_mapping mapping, size_t count, const float *x, const float *const *parameters,
-                                     const size_t *strides, float *u, sf_error *error);
-sf_status sf_mapping_invert_fill_f64(sf_mapping mapping, size_t count, const double *x, const double *const *parameters,
-                                     const size_t *strides, double *u, sf_error *error);
+SF_API sf_status sf_mapping_weight_fill_f32(sf_mapping mapping, size_t count, const float *x,
+                                            const float *const *parameters, const size_t *strides, float *weight,
+                                            sf_error *error);
+SF_API sf_status sf_mapping_weight_fill_f64(sf_mapping mapping, size_t count, const double *x,
+                                            const double *const *parameters, const size_t *strides, double *weight,
+                                            sf_error *error);
+SF_API sf_status sf_mapping_invert_fill_f32(sf_mapping mapping, size_t count, const float *x,
+                                            const float *const *parameters, const size_t *strides, float *u,
+                                            sf_error *error);
+SF_API sf_status sf_mapping_invert_fill_f64(sf_mapping mapping, size_t count, const double *x,
+                                            const double *const *parameters, const size_t *strides, double *u,
+                                            sf_error *error);
 
 /* The terms of a GGX microsurface (mapping_lobe.h) beside its visible normals. */
 typedef enum sf_ggx_term {
@@ -142,10 +150,11 @@ typedef enum sf_ggx_term {
  * values            `count`, apart from the inputs; nothing is written when an input is refused
  *
  * The inline functions' own results, bit for bit (float). Thread-safe. */
-sf_status sf_ggx_fill_f32(sf_ggx_term term, size_t count, const float *w, const float *v, const float *alpha_x,
-                          const float *alpha_y, const size_t *strides, float *values, sf_error *error);
-sf_status sf_ggx_fill_f64(sf_ggx_term term, size_t count, const double *w, const double *v, const double *alpha_x,
-                          const double *alpha_y, const size_t *strides, double *values, sf_error *error);
+SF_API sf_status sf_ggx_fill_f32(sf_ggx_term term, size_t count, const float *w, const float *v, const float *alpha_x,
+                                 const float *alpha_y, const size_t *strides, float *values, sf_error *error);
+SF_API sf_status sf_ggx_fill_f64(sf_ggx_term term, size_t count, const double *w, const double *v,
+                                 const double *alpha_x, const double *alpha_y, const size_t *strides, double *values,
+                                 sf_error *error);
 
 #ifdef __cplusplus
 }

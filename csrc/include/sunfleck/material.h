@@ -40,13 +40,13 @@ typedef struct sf_material {
 } sf_material;
 
 /* Diffuse. */
-sf_material sf_material_default(void);
+SF_API sf_material sf_material_default(void);
 
 /* Refuses a value out of its range, as adding a mesh does; NULL is allowed for `error`. */
-sf_status sf_material_check(const sf_material *material, sf_error *error);
+SF_API sf_status sf_material_check(const sf_material *material, sf_error *error);
 
 /* "diffuse", "mirror", …; NULL beyond the last. */
-const char *sf_material_kind_name(sf_material_kind kind);
+SF_API const char *sf_material_kind_name(sf_material_kind kind);
 
 /* ---- Fresnel ---- */
 

@@ -79,28 +79,28 @@ typedef enum sf_scramble {
 
 /* The names "uniform", "owen", … and a line about each; NULL beyond the last, so that they can
  * be listed. SF_SCRAMBLE_DEFAULT is called "default". */
-const char *sf_pattern_name(sf_pattern pattern);
-const char *sf_pattern_description(sf_pattern pattern);
-const char *sf_scramble_name(sf_scramble scramble);
-const char *sf_scramble_description(sf_scramble scramble);
+SF_API const char *sf_pattern_name(sf_pattern pattern);
+SF_API const char *sf_pattern_description(sf_pattern pattern);
+SF_API const char *sf_scramble_name(sf_scramble scramble);
+SF_API const char *sf_scramble_description(sf_scramble scramble);
 
 /* The value called `name`; the error lists the names. */
-sf_status sf_pattern_find(const char *name, sf_pattern *pattern, sf_error *error);
-sf_status sf_scramble_find(const char *name, sf_scramble *scramble, sf_error *error);
+SF_API sf_status sf_pattern_find(const char *name, sf_pattern *pattern, sf_error *error);
+SF_API sf_status sf_scramble_find(const char *name, sf_scramble *scramble, sf_error *error);
 
 /* What a pattern can do: the largest dims and index + 1, whether it needs its total ahead, the
  * scramble that SF_SCRAMBLE_DEFAULT stands for, and whether it takes the one asked about. */
-uint32_t sf_pattern_max_dims(sf_pattern pattern);
-uint64_t sf_pattern_max_count(sf_pattern pattern); /* UINT64_MAX: no limit but the index's type */
-int sf_pattern_needs_total(sf_pattern pattern);
-sf_scramble sf_pattern_default_scramble(sf_pattern pattern);
+SF_API uint32_t sf_pattern_max_dims(sf_pattern pattern);
+SF_API uint64_t sf_pattern_max_count(sf_pattern pattern); /* UINT64_MAX: no limit but the index's type */
+SF_API int sf_pattern_needs_total(sf_pattern pattern);
+SF_API sf_scramble sf_pattern_default_scramble(sf_pattern pattern);
 /* The scramble for one who wants a random set whatever the pattern: the default where that uses the
  * seed, else the first that the pattern takes: shift for lattice and r2, permuted for hammersley;
  * SF_SCRAMBLE_NONE where there is none, of patterns that are random by nature and of uniform. */
-sf_scramble sf_pattern_random_scramble(sf_pattern pattern);
+SF_API sf_scramble sf_pattern_random_scramble(sf_pattern pattern);
 /* Whether the pattern without a scramble still depends on the seed. */
-int sf_pattern_is_random(sf_pattern pattern);
-int sf_pattern_takes_scramble(sf_pattern pattern, sf_scramble scramble);
+SF_API int sf_pattern_is_random(sf_pattern pattern);
+SF_API int sf_pattern_takes_scramble(sf_pattern pattern, sf_scramble scramble);
 
 /* The nearest counts that the pattern takes at or below n and at or above it; 0 where there is
  * none. Both are n where n itself is valid, as it always is for patterns that need no total.
@@ -108,13 +108,13 @@ int sf_pattern_takes_scramble(sf_pattern pattern, sf_scramble scramble);
  * twice the smallest, up to 2^32: ("jittered", 2, 997) gives 992 = 32 x 31 and 999 = 37 x 27.
  * multijittered takes such products of two integers up to 2^24, whatever the dimensions;
  * orthogonal q^2, q a prime or a power of two, dims - 1 .. 4096; latin and hammersley any from 1. */
-sf_status sf_pattern_valid_counts(sf_pattern pattern, uint32_t dims, uint64_t n, uint64_t *below, uint64_t *above,
-                                  sf_error *error);
+SF_API sf_status sf_pattern_valid_counts(sf_pattern pattern, uint32_t dims, uint64_t n, uint64_t *below,
+                                         uint64_t *above, sf_error *error);
 
 /* The sides of the grid that uniform and jittered use for n cells: dims integers with product n,
  * none above twice the least, the most even such, in falling order. Refuses another n, naming
  * the nearest valid counts. */
-sf_status sf_grid_sides(uint64_t n, uint32_t dims, uint32_t *sides, sf_error *error);
+SF_API sf_status sf_grid_sides(uint64_t n, uint32_t dims, uint32_t *sides, sf_error *error);
 
 /* Threads that stay between fills, for arrays so small that to start threads takes as long as to
  * fill them. A team is empty at first and grows as fills ask; its threads sleep when there has
@@ -123,8 +123,8 @@ sf_status sf_grid_sides(uint64_t n, uint32_t dims, uint32_t *sides, sf_error *er
 typedef struct sf_thread_team sf_thread_team;
 #define SF_THREAD_TEAM_MAX 255u /* threads */
 
-sf_status sf_thread_team_create(sf_thread_team **team, sf_error *error);
-void sf_thread_team_destroy(sf_thread_team *team);
+SF_API sf_status sf_thread_team_create(sf_thread_team **team, sf_error *error);
+SF_API void sf_thread_team_destroy(sf_thread_team *team);
 
 typedef struct sf_points_options {
     sf_pattern pattern;   /* default sobol */
@@ -143,7 +143,7 @@ typedef struct sf_points_options {
     sf_thread_team *team; /* where they come from; NULL (default): started for the call */
 } sf_points_options;
 
-sf_points_options sf_points_options_default(void);
+SF_API sf_points_options sf_points_options_default(void);
 
 /* Fills `out` with points first .. first + count - 1.
  *
@@ -151,92 +151,97 @@ sf_points_options sf_points_options_default(void);
  *         the 32-bit words. count = 0 is allowed and touches nothing
  *
  * Refuses bad options with a message before any work. */
-sf_status sf_points_fill_f32(const sf_points_options *options, size_t count, float *out, sf_error *error);
-sf_status sf_points_fill_f64(const sf_points_options *options, size_t count, double *out, sf_error *error);
-sf_status sf_points_fill_u32(const sf_points_options *options, size_t count, uint32_t *out, sf_error *error);
+SF_API sf_status sf_points_fill_f32(const sf_points_options *options, size_t count, float *out, sf_error *error);
+SF_API sf_status sf_points_fill_f64(const sf_points_options *options, size_t count, double *out, sf_error *error);
+SF_API sf_status sf_points_fill_u32(const sf_points_options *options, size_t count, uint32_t *out, sf_error *error);
 
 /* A pattern with its tables made, for those who ask for a few points at a time: sf_points_fill_…
  * makes them anew each call, 6 ms for 21,201 dimensions of Sobol, of which a point then takes
  * 0.04 ms. `first` of the options is not used. Immutable once made, so that threads may share it. */
 typedef struct sf_point_set sf_point_set;
 
-sf_status sf_point_set_create(const sf_points_options *options, sf_point_set **set, sf_error *error);
-void sf_point_set_destroy(sf_point_set *set); /* NULL is legal */
+SF_API sf_status sf_point_set_create(const sf_points_options *options, sf_point_set **set, sf_error *error);
+SF_API void sf_point_set_destroy(sf_point_set *set); /* NULL is legal */
 
 /* As sf_points_fill_…, from index `first`. A pattern that needs its total must have been given it. */
-sf_status sf_point_set_fill_f32(const sf_point_set *set, uint64_t first, size_t count, float *out, sf_error *error);
-sf_status sf_point_set_fill_f64(const sf_point_set *set, uint64_t first, size_t count, double *out, sf_error *error);
-sf_status sf_point_set_fill_u32(const sf_point_set *set, uint64_t first, size_t count, uint32_t *out, sf_error *error);
+SF_API sf_status sf_point_set_fill_f32(const sf_point_set *set, uint64_t first, size_t count, float *out,
+                                       sf_error *error);
+SF_API sf_status sf_point_set_fill_f64(const sf_point_set *set, uint64_t first, size_t count, double *out,
+                                       sf_error *error);
+SF_API sf_status sf_point_set_fill_u32(const sf_point_set *set, uint64_t first, size_t count, uint32_t *out,
+                                       sf_error *error);
 
 /* ---- one coordinate at a time ----
  *
  * Each equals the fill with the default scramble and the same seed. The preconditions are
  * asserted. */
 
-float sf_random_sample(uint64_t index, uint32_t dimension, uint64_t seed);
+SF_API float sf_random_sample(uint64_t index, uint32_t dimension, uint64_t seed);
 
 /* `sides` as sf_grid_sides gives them, index below their product, dimension < dims. */
-float sf_uniform_sample(uint64_t index, uint32_t dimension, uint32_t dims, const uint32_t *sides);
-float sf_jittered_sample(uint64_t index, uint32_t dimension, uint64_t seed, uint32_t dims, const uint32_t *sides);
+SF_API float sf_uniform_sample(uint64_t index, uint32_t dimension, uint32_t dims, const uint32_t *sides);
+SF_API float sf_jittered_sample(uint64_t index, uint32_t dimension, uint64_t seed, uint32_t dims,
+                                const uint32_t *sides);
 
 /* total 1 .. 2^32, index < total. */
-float sf_latin_sample(uint64_t index, uint32_t dimension, uint64_t seed, uint64_t total);
+SF_API float sf_latin_sample(uint64_t index, uint32_t dimension, uint64_t seed, uint64_t total);
 
 /* `sides` as sf_grid_sides gives them for two dimensions, their product at most 2^24, index below it. */
-float sf_multijittered_sample(uint64_t index, uint32_t dimension, uint64_t seed, const uint32_t sides[2]);
+SF_API float sf_multijittered_sample(uint64_t index, uint32_t dimension, uint64_t seed, const uint32_t sides[2]);
 
 /* levels a prime or a power of two, 2 .. 4096; index < levels^2; dimension <= levels. */
-float sf_orthogonal_sample(uint64_t index, uint32_t dimension, uint64_t seed, uint32_t levels);
+SF_API float sf_orthogonal_sample(uint64_t index, uint32_t dimension, uint64_t seed, uint32_t levels);
 
-float sf_halton_sample(uint64_t index, uint32_t dimension, uint64_t seed);      /* dimension < SF_HALTON_MAX_DIMS */
-float sf_halton_owen_sample(uint64_t index, uint32_t dimension, uint64_t seed); /* the fill with that scramble */
+SF_API float sf_halton_sample(uint64_t index, uint32_t dimension, uint64_t seed); /* dimension < SF_HALTON_MAX_DIMS */
+SF_API float sf_halton_owen_sample(uint64_t index, uint32_t dimension, uint64_t seed); /* the fill with that scramble */
 
 /* total 1 .. 2^32, index < total, dimension <= SF_HALTON_MAX_DIMS. */
-float sf_hammersley_sample(uint64_t index, uint32_t dimension, uint64_t total);
+SF_API float sf_hammersley_sample(uint64_t index, uint32_t dimension, uint64_t total);
 
 /* dimension < SF_LATTICE_MAX_DIMS. */
-float sf_lattice_sample(uint64_t index, uint32_t dimension);
-float sf_lattice_shifted_sample(uint64_t index, uint32_t dimension, uint64_t seed); /* the fill with shift */
+SF_API float sf_lattice_sample(uint64_t index, uint32_t dimension);
+SF_API float sf_lattice_shifted_sample(uint64_t index, uint32_t dimension, uint64_t seed); /* the fill with shift */
 
 /* increments[d] of a point's dims: the (d + 1)-th power of g, the root of g^dims + g^(dims + 1) = 1,
  * as a fraction of 2^64, correctly rounded but for ties nearer than 2^-100. Some 0.1 ms. */
-void sf_r2_increments(uint32_t dims, uint64_t *increments);
+SF_API void sf_r2_increments(uint32_t dims, uint64_t *increments);
 
 /* increment: sf_r2_increments' of the dimension. */
-float sf_r2_sample(uint64_t index, uint64_t increment);
-float sf_r2_shifted_sample(uint64_t index, uint32_t dimension, uint64_t seed, uint64_t increment);
+SF_API float sf_r2_sample(uint64_t index, uint64_t increment);
+SF_API float sf_r2_shifted_sample(uint64_t index, uint32_t dimension, uint64_t seed, uint64_t increment);
 
-float sf_sobol_sample(uint32_t index, uint32_t dimension, uint64_t seed); /* dimension < SF_SOBOL_MAX_DIMS */
-float sf_sz_sample(uint32_t index, uint32_t dimension, uint64_t seed);    /* dimension < SF_SZ_MAX_DIMS */
+SF_API float sf_sobol_sample(uint32_t index, uint32_t dimension, uint64_t seed); /* dimension < SF_SOBOL_MAX_DIMS */
+SF_API float sf_sz_sample(uint32_t index, uint32_t dimension, uint64_t seed);    /* dimension < SF_SZ_MAX_DIMS */
 
 /* The same with a scramble (default, none, shift, lms, owen, nested) and a pad (0, 2, 4) of one's
  * own: any dimension where pad is not 0, which then takes the default, owen or nested. */
-float sf_sobol_sample_with(uint32_t index, uint32_t dimension, uint64_t seed, sf_scramble scramble, uint32_t pad);
-float sf_sz_sample_with(uint32_t index, uint32_t dimension, uint64_t seed, sf_scramble scramble, uint32_t pad);
+SF_API float sf_sobol_sample_with(uint32_t index, uint32_t dimension, uint64_t seed, sf_scramble scramble,
+                                  uint32_t pad);
+SF_API float sf_sz_sample_with(uint32_t index, uint32_t dimension, uint64_t seed, sf_scramble scramble, uint32_t pad);
 
 /* The 32-bit words of the unscrambled sequences. */
-uint32_t sf_sobol_bits(uint32_t index, uint32_t dimension);
-uint32_t sf_sz_bits(uint32_t index, uint32_t dimension);
-uint32_t sf_halton_bits(uint64_t index, uint32_t dimension);
-uint64_t sf_lattice_bits(uint64_t index, uint32_t dimension); /* of 64 bits, exact */
+SF_API uint32_t sf_sobol_bits(uint32_t index, uint32_t dimension);
+SF_API uint32_t sf_sz_bits(uint32_t index, uint32_t dimension);
+SF_API uint32_t sf_halton_bits(uint64_t index, uint32_t dimension);
+SF_API uint64_t sf_lattice_bits(uint64_t index, uint32_t dimension); /* of 64 bits, exact */
 
 /* What "shift" adds to lattice and r2, as a fraction of 2^64; r2 then begins at 0, not at 1/2. */
-uint64_t sf_shift_bits(uint64_t seed, uint32_t dimension);
+SF_API uint64_t sf_shift_bits(uint64_t seed, uint32_t dimension);
 
 /* A coordinate's 64 bits, for sf_float_from_bits of the upper 32 and sf_double_from_bits: `word` of
  * an unscrambled net in base 2, scrambled as a dimension of sobol or sz is. The bits below 32
  * continue each scramble: a shift's own, further rows of the random matrix, further flips. */
-uint64_t sf_scramble_word(uint32_t word, uint32_t dimension, uint64_t seed, sf_scramble scramble);
+SF_API uint64_t sf_scramble_word(uint32_t word, uint32_t dimension, uint64_t seed, sf_scramble scramble);
 
 /* The index that a padded set has in the place of `index`: its own for set 0. */
-uint32_t sf_padded_index(uint32_t index, uint32_t set, uint64_t seed, sf_scramble scramble);
+SF_API uint32_t sf_padded_index(uint32_t index, uint32_t set, uint64_t seed, sf_scramble scramble);
 
 /* ---- the parts, for kernels of one's own ---- */
 
 /* The 32 direction numbers of a dimension: column k is what bit k of the index XORs into the
  * point, as a fraction of 2^32 (column 0 is 2^31 in every dimension). */
-void sf_sobol_matrix(uint32_t dimension, uint32_t columns[32]);
-void sf_sz_matrix(uint32_t dimension, uint32_t columns[32]);
+SF_API void sf_sobol_matrix(uint32_t dimension, uint32_t columns[32]);
+SF_API void sf_sz_matrix(uint32_t dimension, uint32_t columns[32]);
 
 /* The key with which a dimension of a pattern of that seed is scrambled. */
 static inline uint32_t sf_owen_seed(uint64_t seed, uint32_t dimension) {

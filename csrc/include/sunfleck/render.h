@@ -30,7 +30,7 @@ extern "C" {
  * *film is all the same the finished film, the caller's: the one failure that sets it.
  *
  * Thread-safe: several renders may run at once, of one scene or several. */
-sf_status sf_render(const sf_scene *scene, const sf_render_options *options, sf_film **film, sf_error *error);
+SF_API sf_status sf_render(const sf_scene *scene, const sf_render_options *options, sf_film **film, sf_error *error);
 
 #ifdef __cplusplus
 }

@@ -80,15 +80,15 @@ typedef struct sf_rng {
 
 /* "minstd", "xorshift64-lrl", …, and a line about each; NULL beyond the last, so that they can
  * be listed. Thread-safe. */
-const char *sf_rng_name(sf_rng_kind kind);
-const char *sf_rng_description(sf_rng_kind kind);
+SF_API const char *sf_rng_name(sf_rng_kind kind);
+SF_API const char *sf_rng_description(sf_rng_kind kind);
 
 /* The generator called `name`; the error lists the names. Thread-safe. */
-sf_status sf_rng_find(const char *name, sf_rng_kind *kind, sf_error *error);
+SF_API sf_status sf_rng_find(const char *name, sf_rng_kind *kind, sf_error *error);
 
 /* Bits in a native draw: 31 (minstd, randu, ran1, ran2), 32 (lcg32, mt19937, pcg32, philox4x32) or
  * 64. 0 for an unknown kind. */
-unsigned sf_rng_native_bits(sf_rng_kind kind);
+SF_API unsigned sf_rng_native_bits(sf_rng_kind kind);
 
 /* Seeds `rng`. With stream 0 a generator is seeded as its reference is, so that published
  * vectors hold:
@@ -118,7 +118,7 @@ unsigned sf_rng_native_bits(sf_rng_kind kind);
  * sf_hash64(seed, s), stream s > 0 is pcg32_srandom_r(sf_hash64(h, 0), sf_hash64(h, 1)), for
  * s < 2^63. Refuses a seed that the method cannot take, naming its range; with stream > 0 every
  * seed is taken. */
-sf_status sf_rng_init(sf_rng *rng, sf_rng_kind kind, uint64_t seed, uint64_t stream, sf_error *error);
+SF_API sf_status sf_rng_init(sf_rng *rng, sf_rng_kind kind, uint64_t seed, uint64_t stream, sf_error *error);
 
 /* The constants of a general linear congruential generator, lcg32 or lcg64. */
 typedef struct sf_lcg_parameters {
@@ -128,20 +128,20 @@ typedef struct sf_lcg_parameters {
 } sf_lcg_parameters;
 
 /* The constants that sf_rng_init gives lcg32 and lcg64 (see sf_lcg32, sf_lcg64). */
-sf_lcg_parameters sf_lcg_parameters_default(sf_rng_kind kind);
+SF_API sf_lcg_parameters sf_lcg_parameters_default(sf_rng_kind kind);
 
 /* sf_rng_init for lcg32 and lcg64 with constants of your own. Constants under which the sequence
  * would collapse to few states are refused; those that are merely bad are not. A draw is the
  * state; floats come from state / modulus (see the fills). Children and streams keep the
  * constants. */
-sf_status sf_rng_init_lcg(sf_rng *rng, sf_rng_kind kind, const sf_lcg_parameters *parameters, uint64_t seed,
-                          uint64_t stream, sf_error *error);
+SF_API sf_status sf_rng_init_lcg(sf_rng *rng, sf_rng_kind kind, const sf_lcg_parameters *parameters, uint64_t seed,
+                                 uint64_t stream, sf_error *error);
 
 /* Starts again, as sf_rng_init or sf_rng_init_lcg did; children are counted from 0 again. */
-void sf_rng_reset(sf_rng *rng);
+SF_API void sf_rng_reset(sf_rng *rng);
 
 /* The next native draw, in 31, 32 or 64 bits. */
-uint64_t sf_rng_next_raw(sf_rng *rng);
+SF_API uint64_t sf_rng_next_raw(sf_rng *rng);
 
 /* Bulk fills. Calls may be split at any place with the same words.
  *
@@ -158,23 +158,23 @@ uint64_t sf_rng_next_raw(sf_rng *rng);
  * u32 and u64 give x itself.
  *
  * u64 and f64 leave a waiting half where it is, as NumPy's generators do. Cannot fail. */
-void sf_rng_fill_u32(sf_rng *rng, size_t count, uint32_t *out);
-void sf_rng_fill_u64(sf_rng *rng, size_t count, uint64_t *out);
-void sf_rng_fill_f32(sf_rng *rng, size_t count, float *out);
-void sf_rng_fill_f64(sf_rng *rng, size_t count, double *out);
+SF_API void sf_rng_fill_u32(sf_rng *rng, size_t count, uint32_t *out);
+SF_API void sf_rng_fill_u64(sf_rng *rng, size_t count, uint64_t *out);
+SF_API void sf_rng_fill_f32(sf_rng *rng, size_t count, float *out);
+SF_API void sf_rng_fill_f64(sf_rng *rng, size_t count, double *out);
 
 /* One value of the fill of that name. */
-uint32_t sf_rng_next_u32(sf_rng *rng);
-uint64_t sf_rng_next_u64(sf_rng *rng);
-float sf_rng_next_f32(sf_rng *rng);
-double sf_rng_next_f64(sf_rng *rng);
+SF_API uint32_t sf_rng_next_u32(sf_rng *rng);
+SF_API uint64_t sf_rng_next_u64(sf_rng *rng);
+SF_API float sf_rng_next_f32(sf_rng *rng);
+SF_API double sf_rng_next_f64(sf_rng *rng);
 
 /* Words of which every bit is random, for algorithms that need them, such as NumPy's
  * distributions: of 31-bit methods the top 16 bits of two draws; of lcg32 and lcg64 with another
  * modulus the fractions that floats are made of. 64 bits from methods of 31 and 32 are two such
  * words, the first in the high half, as NumPy composes those of its MT19937. */
-uint32_t sf_rng_next_full32(sf_rng *rng);
-uint64_t sf_rng_next_full64(sf_rng *rng);
+SF_API uint32_t sf_rng_next_full32(sf_rng *rng);
+SF_API uint64_t sf_rng_next_full64(sf_rng *rng);
 
 /* The functions of those names made for one kind, for callers that keep pointers to functions, as
  * NumPy's bitgen_t does; `rng` is a sf_rng of that kind. */
@@ -184,30 +184,30 @@ typedef struct sf_rng_callbacks {
     double (*next_f64)(void *rng);
     uint64_t (*next_raw)(void *rng);
 } sf_rng_callbacks;
-sf_rng_callbacks sf_rng_callbacks_of(sf_rng_kind kind);
+SF_API sf_rng_callbacks sf_rng_callbacks_of(sf_rng_kind kind);
 
 /* Passes over `count` native draws, and drops a waiting half word. Takes O(log count) steps: about
  * a microsecond for methods that count or are congruential, 20 µs for xorshift64 and combined,
  * 300 µs for xoshiro256++, 8 ms for the Mersenne Twisters (which walk some 2^22 draws instead).
  * SF_STATUS_UNSUPPORTED, with `rng` unchanged, for ran1, ran2 (their tables depend on all draws
  * before) and sfc64 (no closed form is known). */
-sf_status sf_rng_skip(sf_rng *rng, uint64_t count, sf_error *error);
+SF_API sf_status sf_rng_skip(sf_rng *rng, uint64_t count, sf_error *error);
 
 /* Makes `count` independent generators of the parent's kind: child number k (counted over the
  * parent's life) has seed sf_hash64(h, 2 k) and stream sf_hash64(h, 2 k + 1) | 1 (within the
  * method's range), where h = sf_hash64(seed, stream) of the parent. The parent's own draws do
  * not move, so that children do not depend on how much it was used. */
-void sf_rng_spawn(sf_rng *parent, size_t count, sf_rng *children);
+SF_API void sf_rng_spawn(sf_rng *parent, size_t count, sf_rng *children);
 
 /* The whole state as words: first the method's own, in the order of its struct, then
  * has_pending << 32 | pending, seed, stream, spawned. */
 #define SF_RNG_STATE_MAX 1024
-size_t sf_rng_state_size(sf_rng_kind kind); /* words, at most SF_RNG_STATE_MAX; 0 for an unknown kind */
-void sf_rng_get_state(const sf_rng *rng, uint64_t *words);
+SF_API size_t sf_rng_state_size(sf_rng_kind kind); /* words, at most SF_RNG_STATE_MAX; 0 for an unknown kind */
+SF_API void sf_rng_get_state(const sf_rng *rng, uint64_t *words);
 
 /* Restores a state; a wrong count, or a state that the method cannot be in (all zero, out of
  * range), is refused and leaves `rng` as it was. */
-sf_status sf_rng_set_state(sf_rng *rng, sf_rng_kind kind, const uint64_t *words, size_t count, sf_error *error);
+SF_API sf_status sf_rng_set_state(sf_rng *rng, sf_rng_kind kind, const uint64_t *words, size_t count, sf_error *error);
 
 #ifdef __cplusplus
 }

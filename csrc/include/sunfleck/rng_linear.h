@@ -79,7 +79,7 @@ typedef struct sf_mt19937 {
 } sf_mt19937;
 
 /* Replaces the words by the next generation. */
-void sf_mt19937_refill(sf_mt19937 *g);
+SF_API void sf_mt19937_refill(sf_mt19937 *g);
 
 static inline uint32_t sf_mt19937_next(sf_mt19937 *g) {
     if (g->used == 624) sf_mt19937_refill(g);
@@ -96,7 +96,7 @@ typedef struct sf_mt19937_64 {
     uint64_t used;       /* 0 .. 312 */
 } sf_mt19937_64;
 
-void sf_mt19937_64_refill(sf_mt19937_64 *g);
+SF_API void sf_mt19937_64_refill(sf_mt19937_64 *g);
 
 static inline uint64_t sf_mt19937_64_next(sf_mt19937_64 *g) {
     if (g->used == 312) sf_mt19937_64_refill(g);

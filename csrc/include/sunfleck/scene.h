@@ -39,7 +39,7 @@ typedef struct sf_mesh {
 } sf_mesh;
 
 /* A mesh without arrays, diffuse, albedo 0.5, no emission. */
-sf_mesh sf_mesh_default(void);
+SF_API sf_mesh sf_mesh_default(void);
 
 /* A sphere, exactly. It reflects on both sides and emits outwards: from inside it shows no light. */
 typedef struct sf_sphere {
@@ -61,8 +61,8 @@ typedef struct sf_disk {
 } sf_disk;
 
 /* Of radius 1 about the origin, diffuse, albedo 0.5, no emission. */
-sf_sphere sf_sphere_default(void);
-sf_disk sf_disk_default(void);
+SF_API sf_sphere sf_sphere_default(void);
+SF_API sf_disk sf_disk_default(void);
 
 /* A light at infinity: the same radiance from all directions within an angle of one. */
 typedef struct sf_sun {
@@ -72,7 +72,7 @@ typedef struct sf_sun {
     float irradiance[3];  /* of a surface that faces it, each in [0, 1e18]: pi sin^2(angular_radius) times
                              its radiance; default 1 */
 } sf_sun;
-sf_sun sf_sun_default(void);
+SF_API sf_sun sf_sun_default(void);
 
 /* Radiance from all around, by direction, in addition to the background: a picture in latitude and
  * longitude as OpenEXR lays it out. Row 0 is at the top, where `up` points; column 0 at longitude
@@ -88,7 +88,7 @@ typedef struct sf_environment {
     float up[3];            /* of any length but 0; default (0, 1, 0) */
     float rotation;         /* degrees, finite: turns it about up, counter-clockwise seen from above; default 0 */
 } sf_environment;
-sf_environment sf_environment_default(void);
+SF_API sf_environment sf_environment_default(void);
 
 /* Homogeneous fog, which fills all space, solids too. It takes exp(-(scattering + absorption) distance)
  * of light from a ray's path and scatters its part in other directions, by Henyey and Greenstein's
@@ -98,7 +98,7 @@ typedef struct sf_fog {
     float absorption; /* the same */
     float g;          /* the mean cosine of scattering, -0.99 .. 0.99: 0 is isotropic (default), positive forwards */
 } sf_fog;
-sf_fog sf_fog_default(void); /* none */
+SF_API sf_fog sf_fog_default(void); /* none */
 #define SF_FOG_LIMIT 1e12f
 
 /* How light that can be sampled is found. All three have the same mean; for tests and study. */
@@ -107,7 +107,7 @@ typedef enum sf_light_sampling {
     SF_LIGHT_SAMPLING_LIGHT,    /* by light sampling alone */
     SF_LIGHT_SAMPLING_SURFACE   /* by surface sampling alone, which a sun of angle 0 escapes */
 } sf_light_sampling;
-const char *sf_light_sampling_name(sf_light_sampling sampling); /* "both", …; NULL beyond the last */
+SF_API const char *sf_light_sampling_name(sf_light_sampling sampling); /* "both", …; NULL beyond the last */
 
 /* How one light of several is chosen for a vertex. All have the same mean. Meshes count by their
  * triangles, but that two which form a parallelogram are one piece; suns and the environment have half
@@ -119,7 +119,7 @@ typedef enum sf_light_choice {
                                  as their logarithm. With fewer than 2 pieces there is nothing to choose, and no tree.
                                  Conty Estevez & Kulla 2018 */
 } sf_light_choice;
-const char *sf_light_choice_name(sf_light_choice choice); /* "auto", "power", "tree"; NULL beyond the last */
+SF_API const char *sf_light_choice_name(sf_light_choice choice); /* "auto", "power", "tree"; NULL beyond the last */
 
 /* A pinhole camera, or a thin lens where aperture_radius > 0. Row 0 of the image is the top,
  * image right is forward x up. */
@@ -133,30 +133,30 @@ typedef struct sf_camera {
 } sf_camera;
 
 /* At (0, 0, 1), looking at the origin. */
-sf_camera sf_camera_default(void);
+SF_API sf_camera sf_camera_default(void);
 
 #define SF_MAX_BOUNCES 64
 
 /* Creates an empty scene: black background, 5 bounces, the default camera.
  * Returns SF_STATUS_BACKEND where Embree refuses a device. */
-sf_status sf_scene_create(sf_scene **scene, sf_error *error);
+SF_API sf_status sf_scene_create(sf_scene **scene, sf_error *error);
 
 /* Frees the scene; NULL is allowed. Not while it is being rendered. */
-void sf_scene_destroy(sf_scene *scene);
+SF_API void sf_scene_destroy(sf_scene *scene);
 
 /* Adds a mesh, after checking every value of it (one pass). Zero-area triangles are counted and
  * left out of the lights; an emissive mesh of nothing else is refused. */
-sf_status sf_scene_add_mesh(sf_scene *scene, const sf_mesh *mesh, sf_error *error);
+SF_API sf_status sf_scene_add_mesh(sf_scene *scene, const sf_mesh *mesh, sf_error *error);
 
 /* As a mesh, whose number in messages they share. */
-sf_status sf_scene_add_sphere(sf_scene *scene, const sf_sphere *sphere, sf_error *error);
-sf_status sf_scene_add_disk(sf_scene *scene, const sf_disk *disk, sf_error *error);
+SF_API sf_status sf_scene_add_sphere(sf_scene *scene, const sf_sphere *sphere, sf_error *error);
+SF_API sf_status sf_scene_add_disk(sf_scene *scene, const sf_disk *disk, sf_error *error);
 
 /* Keeps meshes to be placed together, as often as wanted, by sf_scene_add_instances; `prototype` becomes
  * their number. Each is checked as by sf_scene_add_mesh, and its arrays are kept in the same way. They are
  * no part of the picture until they are placed. */
-sf_status sf_scene_add_prototype(sf_scene *scene, const sf_mesh *meshes, size_t mesh_count, uint32_t *prototype,
-                                 sf_error *error);
+SF_API sf_status sf_scene_add_prototype(sf_scene *scene, const sf_mesh *meshes, size_t mesh_count, uint32_t *prototype,
+                                        sf_error *error);
 
 /* Placements of a prototype. */
 typedef struct sf_instances {
@@ -169,7 +169,7 @@ typedef struct sf_instances {
 } sf_instances;
 
 /* Whether the values are allowed, as adding them would say; one pass. */
-sf_status sf_instances_check(const sf_instances *instances, sf_error *error);
+SF_API sf_status sf_instances_check(const sf_instances *instances, sf_error *error);
 
 /* Places the prototype's meshes. Both arrays are read here and not kept. Nothing is added where the
  * transforms are refused, or take the prototype beyond 1e12.
@@ -177,45 +177,46 @@ sf_status sf_instances_check(const sf_instances *instances, sf_error *error);
  * Meshes that do not emit are held once, in Embree too; a placement takes some 0.7 KB. Each mesh that
  * emits is copied for each placement, since each of its triangles is a light of its own. The side that
  * emits (and is a dielectric's outside) goes where the transform takes it: a mirror does not turn it. */
-sf_status sf_scene_add_instances(sf_scene *scene, uint32_t prototype, const sf_instances *instances, sf_error *error);
+SF_API sf_status sf_scene_add_instances(sf_scene *scene, uint32_t prototype, const sf_instances *instances,
+                                        sf_error *error);
 
 /* Adds a sun; there may be 64. */
-sf_status sf_scene_add_sun(sf_scene *scene, const sf_sun *sun, sf_error *error);
+SF_API sf_status sf_scene_add_sun(sf_scene *scene, const sf_sun *sun, sf_error *error);
 
 /* NULL takes it away. One pass over the pixels. */
-sf_status sf_scene_set_environment(sf_scene *scene, const sf_environment *environment, sf_error *error);
+SF_API sf_status sf_scene_set_environment(sf_scene *scene, const sf_environment *environment, sf_error *error);
 
-sf_status sf_scene_set_light_sampling(sf_scene *scene, sf_light_sampling sampling, sf_error *error);
+SF_API sf_status sf_scene_set_light_sampling(sf_scene *scene, sf_light_sampling sampling, sf_error *error);
 
 /* A tree takes 100 bytes a piece, and when the scene is committed O(pieces log pieces) time. */
-sf_status sf_scene_set_light_choice(sf_scene *scene, sf_light_choice choice, sf_error *error);
+SF_API sf_status sf_scene_set_light_choice(sf_scene *scene, sf_light_choice choice, sf_error *error);
 
 /* NULL takes it away; so does a fog of 0. A scene that has both fog and a background, suns or an
  * environment is refused when it is committed: nothing of them would come through. */
-sf_status sf_scene_set_fog(sf_scene *scene, const sf_fog *fog, sf_error *error);
+SF_API sf_status sf_scene_set_fog(sf_scene *scene, const sf_fog *fog, sf_error *error);
 
 /* Triangle and rectangle lights are sampled by solid angle from points nearer to their middle than
  * `ratio` of their diagonals, and by area from all others. 0 .. infinity; default 1; 0 is always by
  * area. A scene none of whose 16 largest lights has a surface so near has no such stage. */
-sf_status sf_scene_set_solid_angle_ratio(sf_scene *scene, float ratio, sf_error *error);
+SF_API sf_status sf_scene_set_solid_angle_ratio(sf_scene *scene, float ratio, sf_error *error);
 
 /* Not 0: no ray passes between triangles that share an edge. Embree intersects by its watertight test
  * (Woop, Benthin, Wald 2013), and hits are moved back along their rays as well as off the surface.
  * Default 0: of rays within a closed box about 1 in 10^7 escapes, and more where triangles are smaller;
  * the price of robust is in docs/scene.md. */
-sf_status sf_scene_set_robust(sf_scene *scene, int robust, sf_error *error);
+SF_API sf_status sf_scene_set_robust(sf_scene *scene, int robust, sf_error *error);
 
-sf_status sf_scene_set_camera(sf_scene *scene, const sf_camera *camera, sf_error *error);
+SF_API sf_status sf_scene_set_camera(sf_scene *scene, const sf_camera *camera, sf_error *error);
 
 /* radiance: each in [0, 1e18]. */
-sf_status sf_scene_set_background(sf_scene *scene, const float radiance[3], sf_error *error);
+SF_API sf_status sf_scene_set_background(sf_scene *scene, const float radiance[3], sf_error *error);
 
 /* max_bounces: 0 (emission seen directly), 1 (direct light), … SF_MAX_BOUNCES. */
-sf_status sf_scene_set_max_bounces(sf_scene *scene, uint32_t max_bounces, sf_error *error);
+SF_API sf_status sf_scene_set_max_bounces(sf_scene *scene, uint32_t max_bounces, sf_error *error);
 
 /* Builds the acceleration structure, the lights and the plan. Refuses an empty scene. A scene
  * is committed once; after that every setter is refused. */
-sf_status sf_scene_commit(sf_scene *scene, sf_error *error);
+SF_API sf_status sf_scene_commit(sf_scene *scene, sf_error *error);
 
 /* What a committed scene holds. */
 typedef struct sf_scene_info {
@@ -237,7 +238,7 @@ typedef struct sf_scene_info {
 } sf_scene_info;
 
 /* NULL is allowed for `error`; the scene must be committed. */
-sf_status sf_scene_get_info(const sf_scene *scene, sf_scene_info *info, sf_error *error);
+SF_API sf_status sf_scene_get_info(const sf_scene *scene, sf_scene_info *info, sf_error *error);
 
 /* One use of sample dimensions by a stage: `count` coordinates of each path. */
 typedef enum sf_dimension_use {
@@ -284,8 +285,8 @@ typedef enum sf_stage {
 } sf_stage;
 
 /* "camera", "lens", … ; never NULL. */
-const char *sf_stage_name(sf_stage stage);
-const char *sf_dimension_use_name(sf_dimension_use use);
+SF_API const char *sf_stage_name(sf_stage stage);
+SF_API const char *sf_dimension_use_name(sf_dimension_use use);
 
 #define SF_PLAN_MAX_GROUPS (3 + 5 * SF_MAX_BOUNCES)
 
@@ -302,7 +303,7 @@ typedef struct sf_plan {
 } sf_plan;
 
 /* The plan of a committed scene. */
-sf_status sf_scene_get_plan(const sf_scene *scene, sf_plan *plan, sf_error *error);
+SF_API sf_status sf_scene_get_plan(const sf_scene *scene, sf_plan *plan, sf_error *error);
 
 #ifdef __cplusplus
 }

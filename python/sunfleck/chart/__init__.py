@@ -175,7 +175,7 @@ def scenes(
         A built-in one's name, a file, or a scene.
     patterns, stops, pixel_filters : str with commas, or sequence of str, optional
         As `sunfleck.render` takes them. None: sobol and random, all three rules, box and
-        gaussian_truncated; if quick, sobol, dyadic and standard-error, box.
+        gaussian_truncated; if quick, sobol, dyadic and standard_error, box.
     tolerances : str with commas, or sequence of float, optional
         Relative to the level, each in (0, 1). None: 0.2, 0.1, 0.05, 0.02, without the last if quick.
     seeds, quick, keep, fresh, progress

@@ -22,7 +22,7 @@ from sunfleck.render import STOP_REASONS, Image
 
 __all__ = ["RULES", "scene_cells", "scene_panels", "scene_pictures"]
 
-RULES = ("dyadic", "standard-error", "replicates")
+RULES = ("dyadic", "standard_error", "replicates")
 
 _MET = STOP_REASONS.index("met")
 _CONFIDENCE = 0.95

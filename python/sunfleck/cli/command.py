@@ -127,7 +127,7 @@ def _add_render(commands: argparse._SubParsersAction[_Parser]) -> None:
     add("--roulette", type=int, default=0, metavar="N", help="Russian roulette from bounce N on; default 0: none")
     add("--pattern", default="sobol", metavar="NAME", help=f"{', '.join(sf.RENDER_PATTERNS)}; default sobol")
     add("--pixel-filter", default="box", metavar="NAME", help=f"{', '.join(sf.PIXEL_FILTERS)}; default box")
-    add("--stop", default="dyadic", metavar="RULE", help="dyadic, replicates or standard-error; default dyadic")
+    add("--stop", default="dyadic", metavar="RULE", help="dyadic, replicates or standard_error; default dyadic")
     add("--unbiased", action="store_true", help="a pilot decides the counts, a second set is shown; costs twice")
     add("--seeds", default="pixel", metavar="POLICY", help="pixel, thread, shared; default pixel")
     add("--seed", type=int, default=0, metavar="N", help="default 0")

@@ -35,7 +35,7 @@ def _penumbra(seed: int, **options: Any) -> sf.Image:
 
 def _one_sigma(seed: int) -> Measured:
     def within(spp: int) -> tuple[float, Array]:
-        made = _penumbra(seed, spp=spp, pattern="random", stop="standard-error", confidence=ONE_SIGMA)
+        made = _penumbra(seed, spp=spp, pattern="random", stop="standard_error", confidence=ONE_SIGMA)
         inside = np.abs(_grey(made) - _reference()) <= made.half_width
         return float(inside.mean()), inside
 
@@ -51,7 +51,7 @@ def _coverage(seed: int) -> Measured:
         outside = np.abs(_grey(made) - _reference()) > made.half_width
         return float(outside.mean()), outside
 
-    before, early = missed("standard-error", 4)
+    before, early = missed("standard_error", 4)
     after, late = missed("dyadic", 32)
     show = [image(outside, "column", "row (1: truth outside its interval)") for outside in (early, late)]
     return Measured(before, after, show[0], show[1])
@@ -65,7 +65,7 @@ def _black(seed: int) -> Measured:
         met = np.asarray(made.stop_reason) == sf.STOP_REASONS.index("met")
         return float(np.mean(met & (_grey(made) == 0))), np.sqrt(_grey(made))
 
-    before, failing = dark("standard-error")
+    before, failing = dark("standard_error")
     after, remedied = dark("dyadic")
     show = [image(np.minimum(shown, 1), "column", "row (square root of radiance)") for shown in (failing, remedied)]
     return Measured(before, after, show[0], show[1])

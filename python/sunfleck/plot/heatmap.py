@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sunfleck import _core
-from sunfleck._arguments import choice
+from sunfleck._arguments import choice, spoken
 from sunfleck.plot.figure import COLORS, Figure, bare_figure
 
 __all__ = ["HEATMAPS", "heatmap"]
@@ -25,8 +25,8 @@ _UNKNOWN = "#BBBBBB"
 _REASON_COLORS = {
     "fixed": COLORS[5],  # sky blue
     "met": COLORS[2],  # green
-    "max samples": COLORS[4],  # orange
-    "out of time": COLORS[3],  # purple
+    "max_samples": COLORS[4],  # orange
+    "out_of_time": COLORS[3],  # purple
     "suspicious": COLORS[1],  # vermilion
     "interrupted": COLORS[0],  # blue
     "masked": COLORS[6],  # black
@@ -138,7 +138,7 @@ def _draw_reasons(parts: tuple[Any, Any, Any], reasons: NDArray[np.uint8], x0: i
     for number, name in enumerate(names):
         share = float(np.mean(reasons == number))
         if share > 0:
-            ax.plot([], [], "s", color=palette[number], label=f"{name}: {_percent(share)}")
+            ax.plot([], [], "s", color=palette[number], label=f"{spoken(name)}: {_percent(share)}")
     ax.legend(fontsize=7, loc="upper left", bbox_to_anchor=(1, 1), frameon=False, handletextpad=0.2)
 
 

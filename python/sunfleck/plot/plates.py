@@ -87,7 +87,7 @@ class Studio:
     @cached_property
     def lecture(self) -> Image:
         """The lecture's own rule: random points, ten at first, until s / sqrt(N) is within the tolerance."""
-        rule: dict[str, Any] = {"pattern": "random", "stop": "standard-error", "confidence": ONE_SIGMA, "min_spp": 10}
+        rule: dict[str, Any] = {"pattern": "random", "stop": "standard_error", "confidence": ONE_SIGMA, "min_spp": 10}
         return self.render(tolerance=TOLERANCE, max_spp=MAX_SPP, **rule)
 
     def errors(self, image: Image) -> NDArray[Any]:

@@ -95,11 +95,11 @@ def render(
         (four pixels' width, B = C = 1/3) and "lanczos" (six). A constant image stays exact under each,
         at any number of samples. The last two need more samples for the same half-width, take
         104 bytes more a pixel, and may leave pixels below 0.
-    stop : "dyadic", "replicates" or "standard-error"
+    stop : "dyadic", "replicates" or "standard_error"
         The rule by which a pixel's half-width is told from its samples. "dyadic": from the
         differences between the halves of its sequence, the halves' halves, …, shared with its
         neighbours; it looks at 32, 64, 128, … samples. "replicates": eight independent copies of
-        the pattern and Student's t, at 128, 256, … samples. "standard-error": the classic
+        the pattern and Student's t, at 128, 256, … samples. "standard_error": the classic
         z·s/√N, which takes a pattern's points for independent.
     unbiased : bool
         Two stages: a pilot decides each pixel's count by the rule, and gives half-width and stop
@@ -170,7 +170,7 @@ def render(
     With ``seeds="pixel"`` the same scene, options and seed give the same picture bit for bit,
     for any ``threads`` and ``tile_size``, on one instruction set. The pixels of
     a crop or a mask are those of the full frame bit for bit with ``spp``, and with an absolute
-    tolerance under the rule "standard-error"; a relative tolerance has the mean of the pixels of
+    tolerance under the rule "standard_error"; a relative tolerance has the mean of the pixels of
     the picture for its level.
     Releases the GIL. Ctrl-C
     stops the render and returns the partial picture, its unfinished pixels marked interrupted.

@@ -8,6 +8,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
+from sunfleck._arguments import spoken
+
 __all__ = ["Summary", "percent"]
 
 
@@ -87,7 +89,8 @@ class Summary:
         x, y = self.worst_pixel
         worst = f"worst {self.worst_half_width / unit:.3g} at ({x}, {y})"
         confidence = f"at {100 * self.confidence:g} %"
-        early = "".join(f", {percent(self._share(r))} {r}" for r in ("out of time", "interrupted") if self.reasons[r])
+        cut_short = [reason for reason in ("out_of_time", "interrupted") if self.reasons[reason]]
+        early = "".join(f", {percent(self._share(reason))} {spoken(reason)}" for reason in cut_short)
         if self.tolerance > 0:
             met = f"{percent(self.share_met)} of pixels met {self.tolerance / unit:.3g} {confidence}"
             return f"{met}{early}; {worst}"
@@ -103,7 +106,7 @@ class Summary:
         return self.reasons[reason] / self.pixels
 
     def __str__(self) -> str:
-        counts = ", ".join(f"{count} {reason}" for reason, count in self.reasons.items() if count)
+        counts = ", ".join(f"{count} {spoken(reason)}" for reason, count in self.reasons.items() if count)
         rate = self.samples / self.seconds / 1e6 if self.seconds > 0 else 0.0
         lines = [
             self.line,
