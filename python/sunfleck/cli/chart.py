@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Sunfleck developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""cli_chart: the command `sunfleck chart`."""
+"""chart: the command `sunfleck chart`."""
 
 from __future__ import annotations
 

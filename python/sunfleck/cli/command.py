@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Sunfleck developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""cli: the command `sunfleck`."""
+"""command: the command `sunfleck`."""
 
 from __future__ import annotations
 

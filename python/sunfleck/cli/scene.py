@@ -1,13 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The Sunfleck developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""cli_scene: the scene that a command is given: a name or a file, and how to read the file."""
+"""scene: the scene that a command is given: a name or a file, and how to read the file."""
 
 from __future__ import annotations
 
 import argparse
 from dataclasses import fields
 
+from sunfleck._arguments import choice
 from sunfleck.io.image import RADIANCE_TYPES, read_radiance
 from sunfleck.io.load import FILE_TYPES, load, scene_by_name, z_is_up
 from sunfleck.io.source import Limits
@@ -53,11 +54,10 @@ def _limits(text: str | None) -> Limits | None:
         return None
     names, values = [field.name for field in fields(Limits)], {}
     for part in text.split(","):
-        name, _, value = part.partition("=")
-        if name.strip() not in names:
-            raise ValueError(f"--limits has {part!r}; give NAME=N with a name of {', '.join(names)}")
+        given, _, value = part.partition("=")
+        name = choice("--limits", given.strip(), names, "give NAME=N with a name of")
         try:
-            values[name.strip()] = int(value) if value.strip().isdecimal() else round(float(value))
+            values[name] = int(value) if value.strip().isdecimal() else round(float(value))
         except (ValueError, OverflowError):
             raise ValueError(f"--limits has {part!r}; give a whole number") from None
     return Limits(**values)
