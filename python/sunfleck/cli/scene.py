@@ -8,7 +8,6 @@ from __future__ import annotations
 import argparse
 from dataclasses import fields
 
-from sunfleck._arguments import choice
 from sunfleck.io.image import RADIANCE_TYPES, read_radiance
 from sunfleck.io.load import FILE_TYPES, load, scene_by_name, z_is_up
 from sunfleck.io.source import Limits
@@ -54,10 +53,11 @@ def _limits(text: str | None) -> Limits | None:
         return None
     names, values = [field.name for field in fields(Limits)], {}
     for part in text.split(","):
-        given, _, value = part.partition("=")
-        name = choice("--limits", given.strip(), names, "give NAME=N with a name of")
+        name, _, value = part.partition("=")
+        if name.strip() not in names:
+            raise ValueError(f"--limits has {part!r}; give NAME=N with a name of {', '.join(names)}")
         try:
-            values[name] = int(value) if value.strip().isdecimal() else round(float(value))
+            values[name.strip()] = int(value) if value.strip().isdecimal() else round(float(value))
         except (ValueError, OverflowError):
             raise ValueError(f"--limits has {part!r}; give a whole number") from None
     return Limits(**values)
