@@ -20,6 +20,7 @@ import os
 import pkgutil
 import re
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -81,20 +82,30 @@ def titled(title: str, underline: str = "=") -> list[str]:
     return [title, underline * len(title), ""]
 
 
-def public_names() -> dict[str, list[tuple[str, Any]]]:
-    """Of each module the names by which its things are had, "points" or "mapping.triangle", and those."""
-    found: dict[str, list[tuple[str, Any]]] = {}
-    for info in pkgutil.iter_modules(sf.__path__):
-        if info.name.startswith("_"):
+def modules() -> Iterator[ModuleType]:
+    """The package's modules; of a folder that says what it offers the whole, of another each module in it."""
+    for info in pkgutil.iter_modules(sf.__path__, "sunfleck."):
+        if info.name.startswith("sunfleck._"):
             continue
-        module = importlib.import_module(f"sunfleck.{info.name}")
-        is_public = info.name == "qmc" or (info.name in sf.__all__ and isinstance(getattr(sf, info.name), ModuleType))
+        module = importlib.import_module(info.name)
+        if not info.ispkg or hasattr(module, "__all__"):
+            yield module
+        else:
+            yield from (importlib.import_module(m.name) for m in pkgutil.iter_modules(module.__path__, f"{info.name}."))
+
+
+def public_names() -> dict[ModuleType, list[tuple[str, Any]]]:
+    """Of each module the names by which its things are had, "points" or "mapping.triangle", and those."""
+    found: dict[ModuleType, list[tuple[str, Any]]] = {}
+    for module in modules():
+        own = module.__name__.removeprefix("sunfleck.")
+        is_public = own == "qmc" or (own in sf.__all__ and getattr(sf, own) is module)
         for name in getattr(module, "__all__", []):
             thing = getattr(module, name)
             if name in sf.__all__ and getattr(sf, name) is thing:
-                found.setdefault(info.name, []).append((name, thing))
+                found.setdefault(module, []).append((name, thing))
             elif is_public:
-                found.setdefault(info.name, []).append((f"{info.name}.{name}", thing))
+                found.setdefault(module, []).append((f"{own}.{name}", thing))
     return found
 
 
@@ -103,9 +114,17 @@ def first_line(thing: Any) -> str:
     return thing if isinstance(thing, str) else (thing.__doc__ or "").partition("\n")[0]
 
 
-def constant(module: str, name: str, thing: Any) -> list[str]:
-    """What the module's source says beneath it; a dictionary as a table of names and lines about them."""
-    said = ModuleAnalyzer.for_module(f"sunfleck.{module}").find_attr_docs().get(("", name), [])
+def said_of(module: ModuleType, name: str) -> list[str]:
+    """What the source says beneath a constant: the module's, or that of a module in its folder."""
+    places = [module.__name__]
+    places += [info.name for info in pkgutil.iter_modules(getattr(module, "__path__", []), f"{module.__name__}.")]
+    comments = (ModuleAnalyzer.for_module(place).find_attr_docs().get(("", name), []) for place in places)
+    return next(filter(None, comments), [])
+
+
+def constant(module: ModuleType, name: str, thing: Any) -> list[str]:
+    """What the source says beneath it; a dictionary as a table of names and lines about them."""
+    said = said_of(module, name)
     made = [f".. py:data:: {name}", "", *(f"   {line}" for line in said), ""]
     if not isinstance(thing, dict):
         return [*made, "   .. code-block:: python", "", f"      {thing!r}", ""]
@@ -115,9 +134,10 @@ def constant(module: str, name: str, thing: Any) -> list[str]:
     return [*made, ""]
 
 
-def python_page(module: str, names: list[tuple[str, Any]]) -> str:
-    lines = titled(f"{module} in Python")
-    lines += [f".. automodule:: sunfleck.{module}", "   :no-members:", "   :no-index:", ""]
+def python_page(module: ModuleType, names: list[tuple[str, Any]]) -> str:
+    title = module.__name__.rpartition(".")[2]
+    lines = titled(f"{title} in Python")
+    lines += [f".. automodule:: {module.__name__}", "   :no-members:", "   :no-index:", ""]
     for full, thing in names:
         place, _, name = f"sunfleck.{full}".rpartition(".")
         lines += [f".. currentmodule:: {place}", ""]
@@ -129,7 +149,7 @@ def python_page(module: str, names: list[tuple[str, Any]]) -> str:
             lines += [f".. autofunction:: {name}", ""]
         else:
             lines += constant(module, name, thing)
-    return write(f"python/{module}", lines)
+    return write(f"python/{title}", lines)
 
 
 def c_page(header: Path) -> str:

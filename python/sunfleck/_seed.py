@@ -7,13 +7,12 @@ from __future__ import annotations
 
 import enum
 import operator
-import secrets
 from typing import Any, Final
 
 import numpy as np
 
 from sunfleck._arguments import integer
-from sunfleck.rng import Rng
+from sunfleck.rng import Rng, system_bits
 
 __all__ = ["UNSET", "Unset", "seed_from", "seed_of"]
 
@@ -38,7 +37,7 @@ def seed_of(name: str, source: Any) -> int:
     the next call with the same object gets others. All else is what `numpy.random.default_rng` takes.
     """
     if source is None:
-        return secrets.randbits(64)
+        return system_bits()
     if isinstance(source, Rng):
         return int(source.bits(1, dtype="uint64")[0])
     if isinstance(source, np.random.SeedSequence):

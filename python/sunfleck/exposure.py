@@ -9,12 +9,11 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from sunfleck._arguments import number
-from sunfleck.io.image import encode_srgb
 
-__all__ = ["auto_exposure", "blank", "exposure_of", "stops", "why_black"]
+__all__ = ["auto_exposure", "blank", "encode_srgb", "exposure_of", "stops", "why_black"]
 
 # "auto" brings the radiance that this share of the lit pixels stay below to this value, so that the brightest
 # tenth, lamps and glints, may clip.
@@ -42,6 +41,29 @@ def exposure_of(value: Any) -> float | str:
     if not _LEAST <= given <= _MOST:
         raise ValueError(f"exposure is {given:g}; give stops from {_LEAST:g} to {_MOST:g}, or 'auto'")
     return given
+
+
+def encode_srgb(linear: ArrayLike) -> NDArray[np.uint8]:
+    """Linear values as 8-bit sRGB (IEC 61966-2-1), clipped to [0, 1], rounded to nearest.
+
+    Parameters
+    ----------
+    linear : array_like, any shape
+        Linear light; 1 is white.
+
+    Returns
+    -------
+    ndarray of uint8, the same shape
+
+    Examples
+    --------
+    >>> from sunfleck.exposure import encode_srgb
+    >>> encode_srgb([0, 0.2140, 1, 7]).tolist()
+    [0, 127, 255, 255]
+    """
+    x = np.clip(np.asarray(linear, dtype=np.float32), 0, 1)
+    encoded = np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.power(x, 1 / 2.4) - 0.055)
+    return (255 * encoded + 0.5).astype(np.uint8)
 
 
 def auto_exposure(color: NDArray[np.float32]) -> float:

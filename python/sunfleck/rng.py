@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-import secrets
+import os
 import time
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, overload
@@ -19,7 +19,7 @@ from sunfleck._arguments import integer, output_array, output_dtype, shape_of, t
 if TYPE_CHECKING:
     from sunfleck.bit_generator import BitGenerator
 
-__all__ = ["RNGS", "Rng"]
+__all__ = ["RNGS", "Rng", "system_bits"]
 
 Shape = int | Sequence[int]
 
@@ -33,6 +33,11 @@ def modulus(m: Any) -> int:
     if not 2 <= number <= 1 << 64:
         raise ValueError(f"m is {number}; a modulus is 2 to 2^64")
     return number & ((1 << 64) - 1)
+
+
+def system_bits() -> int:
+    """64 random bits of the system's: what `secrets` draws, whose import takes hashlib and hmac along."""
+    return int.from_bytes(os.urandom(8), "little")
 
 
 class Rng:
@@ -104,7 +109,7 @@ class Rng:
         if seed is not None:
             self._generator = _core.Rng(name, integer("seed", seed), stream, **constants)
             return
-        mixed = secrets.randbits(64) ^ time.time_ns()
+        mixed = system_bits() ^ time.time_ns()
         candidates = [mixed | 1, mixed >> 33 | 1]  # the second for methods of 31 bits
         if m is not None:
             candidates += [(mixed >> k) % m for k in range(32)]

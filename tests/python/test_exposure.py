@@ -17,8 +17,7 @@ import pytest
 
 import sunfleck as sf
 from gltf_files import CAMERA, SQUARE, box, write_gltf
-from sunfleck.exposure import auto_exposure
-from sunfleck.io.image import encode_srgb
+from sunfleck.exposure import auto_exposure, encode_srgb
 
 FLOOR = sf.Mesh([[-9, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]], [[0, 1, 2], [0, 2, 3]], (0.5, 0.5, 0.5))
 ABOVE = sf.Camera((0, 0, 3), (0, 0, 0))

@@ -16,7 +16,7 @@ import pytest
 
 import sunfleck as sf
 
-MODULES = sorted(m.name for m in pkgutil.iter_modules(sf.__path__, "sunfleck.") if m.name != "sunfleck.__main__")
+MODULES = sorted(m.name for m in pkgutil.walk_packages(sf.__path__, "sunfleck.") if not m.name.endswith("__main__"))
 
 
 @pytest.mark.parametrize("name", ["sunfleck", *MODULES])

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sunfleck._arguments import choice
 from sunfleck.chart.cells import Cell, Key, Store, least_time
 from sunfleck.chart.fit import FLOOR, Fit, fit_slope, log_allowance, pareto_front, theory_of, winners
 from sunfleck.chart.pixels import RENDER_PATTERNS, Pixels
@@ -82,9 +83,7 @@ def method_named(name: str) -> Method:
     if pattern not in PATTERNS:
         allowed = ", ".join([*PATTERNS, *VARIANTS])
         raise ValueError(f"there is no pattern {name!r}; give some of {allowed}, or NAME:SCRAMBLE")
-    given = scramble or "default"
-    if given not in SCRAMBLES:
-        raise ValueError(f"there is no scramble {scramble!r} (of {name!r}); give one of {', '.join(SCRAMBLES)}")
+    given = choice(f"the scramble of {name!r}", scramble or "default", SCRAMBLES)
     make = functools.partial(_points, pattern, None if given == "none" else given)
     make(valid_counts(pattern, 4, 2)[1] or 4, 2, 0)  # refuses a scramble that the pattern does not take
     return Method(name, pattern, scramble or _DEFAULT_SCRAMBLE.get(pattern, "none"), make)

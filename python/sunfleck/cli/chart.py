@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Sunfleck developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""cli_chart: the command `sunfleck chart`."""
+"""chart: the command `sunfleck chart`."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from typing import Any
 
 import sunfleck as sf
 from sunfleck._arguments import choice
+from sunfleck.cli.exit_codes import INTERRUPTED
 from sunfleck.io.files import ending, writable_target
 from sunfleck.scenes import SCENES
 
 __all__ = ["add_chart"]
 
-_INTERRUPTED = 130  # 128 + SIGINT, as shells have it
 _KINDS = ("patterns", "scenes", "generators", "mappings")  # sf.chart.KINDS, without its imports
 
 _EXAMPLES = """\
@@ -90,7 +90,7 @@ def _run(given: argparse.Namespace) -> int:
     if made.complete:
         return 0
     print("sunfleck: interrupted; what was measured is drawn and kept, the same command goes on", file=sys.stderr)
-    return _INTERRUPTED
+    return INTERRUPTED
 
 
 def _refuse_early(outputs: list[str], html: str | None, numbers: str) -> None:

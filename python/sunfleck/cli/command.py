@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Sunfleck developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""cli: the command `sunfleck`."""
+"""command: the command `sunfleck`."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ import sunfleck as sf
 from sunfleck import _core
 from sunfleck._arguments import choice
 from sunfleck.cli.chart import add_chart
+from sunfleck.cli.exit_codes import INTERRUPTED
 from sunfleck.cli.gallery import add_gallery
 from sunfleck.cli.lab import add_lab
 from sunfleck.cli.scene import add_environment, add_scene, scene_of
@@ -34,7 +35,6 @@ from sunfleck.plot.heatmap import HEATMAPS
 
 __all__ = ["main"]
 
-INTERRUPTED = 130  # 128 + SIGINT, as shells have it
 POINT_TYPES = (".npy", ".csv", ".txt")
 
 _RENDER_EXAMPLES = """\

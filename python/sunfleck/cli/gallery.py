@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Sunfleck developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""cli_gallery: the command `sunfleck gallery`."""
+"""gallery: the command `sunfleck gallery`."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Sunfleck developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""cli_lab: the command `sunfleck lab`."""
+"""lab: the command `sunfleck lab`."""
 
 from __future__ import annotations
 

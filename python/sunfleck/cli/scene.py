@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Sunfleck developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""cli_scene: the scene that a command is given: a name or a file, and how to read the file."""
+"""scene: the scene that a command is given: a name or a file, and how to read the file."""
 
 from __future__ import annotations
 

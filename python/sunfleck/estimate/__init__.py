@@ -1,11 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The Sunfleck developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""estimate: running means and variances, standard errors, and intervals for the mean.
+"""estimate: running means and variances, standard errors, and intervals for the mean."""
 
-`accumulator` comes first; `moments` and `running_sums` import it, and `intervals` imports `moments`. The folder stands
-above the package's flat modules of arguments, and below `sunfleck.chart`.
-"""
+# `accumulator` comes first; `moments` and `running_sums` import it, and `intervals` imports `moments`. The folder
+# stands above `sunfleck._arguments`, and below `sunfleck.chart`.
 
 from sunfleck.estimate.intervals import (
     BatchMeans,

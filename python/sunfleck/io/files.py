@@ -6,8 +6,7 @@
 from __future__ import annotations
 
 import os
-import secrets
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -35,6 +34,20 @@ def ending(path: FilePath) -> str:
     return os.path.splitext(os.fspath(path))[1].lower()
 
 
+def known_ending(path: FilePath, endings: Iterable[str], lead: str) -> str:
+    """The path's ending, which is one of those; the refusal of another leads from it to them.
+
+    Raises
+    ------
+    ValueError
+        Another ending.
+    """
+    found, allowed = ending(path), tuple(endings)
+    if found not in allowed:
+        raise ValueError(f"{os.fspath(path)!r} ends in {found!r}; {lead} {', '.join(allowed)}")
+    return found
+
+
 def writable_target(path: FilePath, what: str, endings: Sequence[str]) -> Path:
     """Where the file will be, after everything that can be told before it is written.
 
@@ -48,8 +61,7 @@ def writable_target(path: FilePath, what: str, endings: Sequence[str]) -> Path:
         The folder is missing or can't be written to, or the path is not a file's.
     """
     given = given_path(path)
-    if ending(given) not in endings:
-        raise ValueError(f"{given!r} ends in {ending(given)!r}; {what} are written as {', '.join(endings)}")
+    known_ending(given, endings, f"{what} are written as")
     target = Path(os.path.realpath(given))  # through symbolic links: the rename would replace the link
     if not target.parent.is_dir():
         raise FileNotFoundError(f"can't write {given!r}: there is no folder {str(target.parent)!r}")
@@ -70,7 +82,7 @@ def replacing(path: FilePath, what: str, endings: Sequence[str]) -> Iterator[Pat
         As `writable_target`; and where a write fails, as on a full disk, with the path and the reason.
     """
     target = writable_target(path, what, endings)
-    beside = target.with_name(f".sunfleck-{secrets.token_hex(8)}{ending(path)}")
+    beside = target.with_name(f".sunfleck-{os.urandom(8).hex()}{ending(path)}")
     os.close(os.open(beside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
     try:
         yield beside

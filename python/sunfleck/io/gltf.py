@@ -12,23 +12,22 @@ its extensions KHR_lights_punctual, KHR_mesh_quantization, KHR_node_visibility a
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sunfleck._arguments import Vector, number, vector
+from sunfleck._arguments import number, vector
+from sunfleck.io.contents import Contents, View
 from sunfleck.io.gltf_data import Document
 from sunfleck.io.gltf_material import READ_EXTENSIONS
 from sunfleck.io.gltf_mesh import Placed, shown
 from sunfleck.io.source import Source
-from sunfleck.scene.instances import Instances
-from sunfleck.scene.mesh import Mesh
 from sunfleck.scene.sky import Sun
 
-__all__ = ["Contents", "View", "read_gltf"]
+__all__ = ["read_gltf"]
 
 _READ = {
     "EXT_mesh_gpu_instancing",
@@ -49,32 +48,6 @@ _HARMLESS = {
     "KHR_xmp_json_ld",
     "MSFT_texture_dds",
 }
-
-
-@dataclass(frozen=True)
-class View:
-    """A camera of a file: where it is, where it looks, its vertical angle in degrees, its name, and the width of
-    its frame over the height, which is no more than advice."""
-
-    position: Vector
-    direction: Vector
-    up: Vector
-    vertical_fov: float
-    name: str = ""
-    aspect: float = 1.0
-
-
-@dataclass(frozen=True)
-class Contents:
-    """What a file holds of what scenes have.
-
-    ``photometric``: whether its light is in lux, which no picture shows as it is.
-    """
-
-    meshes: Sequence[Mesh | Instances]
-    views: list[View] = field(default_factory=list)
-    suns: list[Sun] = field(default_factory=list)
-    photometric: bool = False
 
 
 def read_gltf(source: Source) -> Contents:

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sunfleck.io.files import FilePath, ending, given_path, replacing, writable_target
+from sunfleck.exposure import encode_srgb
+from sunfleck.io.files import FilePath, ending, given_path, known_ending, replacing, writable_target
 from sunfleck.io.source import Limits, Source
 
 __all__ = [
@@ -42,29 +43,6 @@ _VIRIDIS = np.array(
         (70, 192, 111), (101, 203, 94), (137, 213, 72), (176, 221, 47), (216, 226, 25), (253, 231, 37),
     ]
 )  # fmt: skip
-
-
-def encode_srgb(linear: ArrayLike) -> NDArray[np.uint8]:
-    """Linear values as 8-bit sRGB (IEC 61966-2-1), clipped to [0, 1], rounded to nearest.
-
-    Parameters
-    ----------
-    linear : array_like, any shape
-        Linear light; 1 is white.
-
-    Returns
-    -------
-    ndarray of uint8, the same shape
-
-    Examples
-    --------
-    >>> from sunfleck.io.image import encode_srgb
-    >>> encode_srgb([0, 0.2140, 1, 7]).tolist()
-    [0, 127, 255, 255]
-    """
-    x = np.clip(np.asarray(linear, dtype=np.float32), 0, 1)
-    encoded = np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.power(x, 1 / 2.4) - 0.055)
-    return (255 * encoded + 0.5).astype(np.uint8)
 
 
 def false_color(values: ArrayLike, low: float | None = None, high: float | None = None) -> NDArray[np.uint8]:
@@ -213,10 +191,7 @@ def read_radiance(path: FilePath, limits: Limits | None = None) -> NDArray[np.fl
         The file can't be read, or is no ordinary file; with the reason.
     """
     given = given_path(path)
-    if ending(given) not in RADIANCE_TYPES:
-        raise ValueError(
-            f"{given!r} ends in {ending(given)!r}; radiance is read from {', '.join(RADIANCE_TYPES)}, which are linear"
-        )
+    known_ending(given, RADIANCE_TYPES, "radiance, which is linear, is read from")
     file = Source(given, limits=limits)
     file.check()
     import OpenImageIO as oiio

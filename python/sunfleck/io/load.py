@@ -15,8 +15,9 @@ import numpy as np
 
 from sunfleck._arguments import vector
 from sunfleck.error import Error
-from sunfleck.io.files import FilePath
-from sunfleck.io.gltf import Contents, View, read_gltf
+from sunfleck.io.contents import Contents, View
+from sunfleck.io.files import FilePath, ending, known_ending
+from sunfleck.io.gltf import read_gltf
 from sunfleck.io.lamp import emits, lit_scene
 from sunfleck.io.obj import read_obj
 from sunfleck.io.ply import read_ply
@@ -52,7 +53,7 @@ FILE_TYPES: dict[str, tuple[Callable[[Source], Contents], bool]] = {
 def _read(source: Source) -> Contents:
     """The reader's answer, or its refusal under the file's name; readers trip in many ways."""
     path = source.path
-    reader, _ = FILE_TYPES[path.suffix.lower()]
+    reader, _ = FILE_TYPES[ending(path)]
     try:
         with np.errstate(all="ignore"):  # what comes out not finite is refused with the mesh or camera
             return reader(source)
@@ -153,7 +154,7 @@ def _lit_scene(file: Path, shapes: Sequence[Mesh | Instances], camera: Camera, a
 
 def z_is_up(path: FilePath) -> bool:
     """Whether z is up in files of that ending, else y; False for an ending that is not known."""
-    return FILE_TYPES.get(Path(path).suffix.lower(), (None, False))[1]
+    return FILE_TYPES.get(ending(path), (None, False))[1]
 
 
 def load(
@@ -245,10 +246,7 @@ def load(
     if not isinstance(environment, (Environment, type(None))):
         raise TypeError(f"environment is {environment!r}; give a sunfleck.Environment")
     file = source.path
-    if file.suffix.lower() not in FILE_TYPES:
-        raise ValueError(
-            f"{str(file)!r} ends in {file.suffix!r}; files that can be loaded end in {', '.join(FILE_TYPES)}"
-        )
+    known_ending(file, FILE_TYPES, "files that can be loaded end in")
     contents = _read(source)
     if not contents.meshes:
         raise ValueError(f"{file}: it holds no triangles")

@@ -16,7 +16,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from sunfleck.io.gltf import Contents
+from sunfleck.io.contents import Contents
 from sunfleck.io.mtl import Materials
 from sunfleck.io.notices import Notices
 from sunfleck.io.polygon import compact, triangulate

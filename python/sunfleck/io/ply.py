@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sunfleck.io.gltf import Contents
+from sunfleck.io.contents import Contents
 from sunfleck.io.notices import Notices
 from sunfleck.io.ply_rows import BinaryBody, Element, Lists, Property, TextBody
 from sunfleck.io.polygon import compact, triangulate

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sunfleck.io.gltf import Contents
+from sunfleck.io.contents import Contents
 from sunfleck.io.notices import Notices
 from sunfleck.io.polygon import triangulate
 from sunfleck.io.source import Source
