@@ -21,6 +21,7 @@ const char *sf_status_name(sf_status status) {
         case SF_STATUS_IO: return "input/output error";
         case SF_STATUS_UNSUPPORTED: return "unsupported";
         case SF_STATUS_BACKEND: return "backend error";
+        case SF_STATUS_INTERRUPTED: return "interrupted";
     }
     return "unknown status";
 }

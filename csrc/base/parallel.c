@@ -34,11 +34,15 @@ struct sf_thread_pool {
     sf_atomic_size next;
     sf_parallel_fn work;
     void *user;
+    const sf_watch *watch; /* NULL: none */
     worker *workers;
 };
 
 static void work_items(sf_thread_pool *pool, unsigned number) {
-    for (size_t item; (item = sf_atomic_fetch_add(&pool->next, 1)) < pool->items;) pool->work(pool->user, number, item);
+    for (size_t item; (item = sf_atomic_fetch_add(&pool->next, 1)) < pool->items;) {
+        if (pool->watch && sf_watch_stopped(pool->watch)) return;
+        pool->work(pool->user, number, item);
+    }
 }
 
 static void *work_phases(void *argument) {
@@ -118,18 +122,44 @@ unsigned sf_parallel_threads(uint32_t threads, size_t items) {
     return threads ? threads : 1;
 }
 
-void sf_parallel_for(unsigned threads, size_t items, sf_parallel_fn work, void *user) {
+/* Returns when the phase has ended, and calls `wait` meanwhile. */
+static void wait_for_phase(sf_thread_pool *pool, sf_parallel_wait_fn wait, void *user) {
+    pthread_mutex_lock(&pool->mutex);
+    while (pool->working > 0) {
+        struct timespec until;
+        clock_gettime(CLOCK_MONOTONIC, &until);
+        until.tv_nsec += WAIT_NANOSECONDS;
+        if (until.tv_nsec >= 1000000000L) {
+            until.tv_nsec -= 1000000000L;
+            ++until.tv_sec;
+        }
+        if (pthread_cond_timedwait(&pool->finish, &pool->mutex, &until) != ETIMEDOUT || pool->working == 0) continue;
+        pthread_mutex_unlock(&pool->mutex);
+        wait(user);
+        pthread_mutex_lock(&pool->mutex);
+    }
+    pthread_mutex_unlock(&pool->mutex);
+}
+
+static void ask(void *watch) { sf_watch_ask(watch); }
+
+void sf_parallel_for_watched(unsigned threads, size_t items, sf_parallel_fn work, void *user, sf_watch *watch) {
     if (threads > SF_PARALLEL_MAX_THREADS) threads = SF_PARALLEL_MAX_THREADS;
+    worker workers[SF_PARALLEL_MAX_THREADS];
+    sf_thread_pool pool = {.watch = watch, .workers = workers};
+    start_threads(&pool, threads < 2 ? 0 : threads - 1, 1);
+    begin_phase(&pool, items, work, user);
+    work_items(&pool, 0);
+    if (watch && watch->interrupt) wait_for_phase(&pool, ask, watch);
+    join_threads(&pool);
+}
+
+void sf_parallel_for(unsigned threads, size_t items, sf_parallel_fn work, void *user) {
     if (threads < 2) {
         for (size_t item = 0; item < items; ++item) work(user, 0, item);
         return;
     }
-    worker workers[SF_PARALLEL_MAX_THREADS];
-    sf_thread_pool pool = {.workers = workers};
-    start_threads(&pool, threads - 1, 1);
-    begin_phase(&pool, items, work, user);
-    work_items(&pool, 0);
-    join_threads(&pool);
+    sf_parallel_for_watched(threads, items, work, user, NULL);
 }
 
 sf_status sf_thread_pool_create(unsigned threads, sf_thread_pool **out, sf_error *error) {
@@ -153,21 +183,7 @@ sf_status sf_thread_pool_create(unsigned threads, sf_thread_pool **out, sf_error
 void sf_thread_pool_run(sf_thread_pool *pool, size_t items, sf_parallel_fn work, sf_parallel_wait_fn wait, void *user) {
     if (items == 0) return;
     begin_phase(pool, items, work, user);
-    pthread_mutex_lock(&pool->mutex);
-    while (pool->working > 0) {
-        struct timespec until;
-        clock_gettime(CLOCK_MONOTONIC, &until);
-        until.tv_nsec += WAIT_NANOSECONDS;
-        if (until.tv_nsec >= 1000000000L) {
-            until.tv_nsec -= 1000000000L;
-            ++until.tv_sec;
-        }
-        if (pthread_cond_timedwait(&pool->finish, &pool->mutex, &until) != ETIMEDOUT || pool->working == 0) continue;
-        pthread_mutex_unlock(&pool->mutex);
-        wait(user);
-        pthread_mutex_lock(&pool->mutex);
-    }
-    pthread_mutex_unlock(&pool->mutex);
+    wait_for_phase(pool, wait, user);
 }
 
 void sf_thread_pool_destroy(sf_thread_pool *pool) {

@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "sunfleck/base.h"
+#include "base/interrupt.h"
 
 #define SF_PARALLEL_MAX_THREADS 256u
 
@@ -23,6 +23,10 @@ unsigned sf_parallel_threads(uint32_t threads, size_t items);
  * are done. The caller is worker 0, and the other threads, at most SF_PARALLEL_MAX_THREADS - 1, live
  * for the call. It cannot fail: what a thread that could not be started would have done, the others do. */
 void sf_parallel_for(unsigned threads, size_t items, sf_parallel_fn work, void *user);
+
+/* The same until the watch says stop: then no item is begun, and `work` must return soon by the watch, which
+ * worker 0 alone may ask. The caller asks, too, while it waits for the others. */
+void sf_parallel_for_watched(unsigned threads, size_t items, sf_parallel_fn work, void *user, sf_watch *watch);
 
 /* Threads that are kept, while the one that called waits and is woken at intervals. */
 typedef struct sf_thread_pool sf_thread_pool;

@@ -222,6 +222,20 @@ static inline int sf_atomic_replace(sf_atomic_size *a, size_t from, size_t to) {
     return __atomic_compare_exchange_n(&a->value, &from, to, 0, __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE);
 }
 
+/* A pointer that threads hand to one another: what it was, and what it pointed to, is seen by who takes it. */
+typedef struct sf_atomic_pointer {
+    void *value;
+} sf_atomic_pointer;
+static inline void *sf_atomic_take(sf_atomic_pointer *a, void *in_its_place) {
+    return __atomic_exchange_n(&a->value, in_its_place, __ATOMIC_ACQ_REL);
+}
+static inline void *sf_atomic_pointer_load(const sf_atomic_pointer *a) {
+    return __atomic_load_n(&a->value, __ATOMIC_ACQUIRE);
+}
+static inline int sf_atomic_pointer_replace(sf_atomic_pointer *a, void *from, void *to) {
+    return __atomic_compare_exchange_n(&a->value, &from, to, 0, __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE);
+}
+
 /* Tells the processor that this is a loop which waits. */
 static inline void sf_pause(void) {
 #if defined(__x86_64__)
@@ -246,6 +260,13 @@ static inline unsigned sf_count_bits(uint32_t x) {
 static inline double sf_seconds_now(void) {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Seconds that the calling thread has had a processor. */
+static inline double sf_thread_seconds_now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 

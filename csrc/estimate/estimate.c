@@ -11,7 +11,6 @@
 
 #define BLOCK 256
 #define LANES 8
-#define MAX_LEVELS 64
 
 /* The finite rows of a block, column by column. */
 typedef struct block {
@@ -71,46 +70,54 @@ static void column_moments(const double *x, size_t n, double *mean, double *m2) 
     *m2 = square > 0.0 ? square : 0.0;
 }
 
-/* The moments of all rows: levels[k] holds 2^k blocks until its twin arrives. */
-static sf_channel_moments array_moments(size_t count, size_t width, const float *f32, const double *f64) {
-    sf_channel_moments levels[MAX_LEVELS], total = {0};
-    uint64_t blocks = 0;
+/* levels[k] holds 2^k blocks until its twin arrives. */
+static void add_blocks(sf_block_moments *m, size_t count, size_t width, const float *f32, const double *f64) {
     block b;
-    for (size_t first = 0; first < count; first += BLOCK, ++blocks) {
-        sf_channel_moments m = {0};
+    for (size_t first = 0; first < count; first += BLOCK, ++m->blocks) {
+        sf_channel_moments one = {0};
         take_block(&b, first, count - first < BLOCK ? count - first : BLOCK, width, f32, f64);
-        m.count = b.count;
-        m.nonfinite = b.nonfinite;
-        for (size_t k = 0; k < width; ++k) column_moments(b.column[k], b.count, &m.mean[k], &m.m2[k]);
+        one.count = b.count;
+        one.nonfinite = b.nonfinite;
+        for (size_t k = 0; k < width; ++k) column_moments(b.column[k], b.count, &one.mean[k], &one.m2[k]);
         int level = 0;
-        for (; blocks >> level & 1; ++level) {
-            sf_channel_moments_merge(&levels[level], &m);
-            m = levels[level];
+        for (; m->blocks >> level & 1; ++level) {
+            sf_channel_moments_merge(&m->levels[level], &one);
+            one = m->levels[level];
         }
-        levels[level] = m;
+        m->levels[level] = one;
     }
-    for (int level = 0; level < MAX_LEVELS && blocks >> level; ++level)
-        if (blocks >> level & 1) {
-            sf_channel_moments_merge(&levels[level], &total);
-            total = levels[level];
+}
+
+static sf_channel_moments total_of(const sf_block_moments *m) {
+    sf_channel_moments total = {0};
+    for (int level = 0; level < SF_BLOCK_MOMENTS_LEVELS && m->blocks >> level; ++level)
+        if (m->blocks >> level & 1) {
+            sf_channel_moments sum = m->levels[level];
+            sf_channel_moments_merge(&sum, &total);
+            total = sum;
         }
     return total;
 }
 
-static void add_scalars(sf_moments *m, sf_channel_moments total) {
+void sf_block_moments_begin(sf_block_moments *m) { m->blocks = 0; }
+void sf_block_moments_add_f32(sf_block_moments *m, size_t count, const float *x) { add_blocks(m, count, 1, x, NULL); }
+void sf_block_moments_add_f64(sf_block_moments *m, size_t count, const double *x) { add_blocks(m, count, 1, NULL, x); }
+void sf_block_moments_add_rows_f32(sf_block_moments *m, size_t count, const float *x) {
+    add_blocks(m, count, 3, x, NULL);
+}
+void sf_block_moments_add_rows_f64(sf_block_moments *m, size_t count, const double *x) {
+    add_blocks(m, count, 3, NULL, x);
+}
+
+void sf_moments_merge_blocks(sf_moments *m, const sf_block_moments *blocks) {
+    sf_channel_moments total = total_of(blocks);
     sf_moments other = sf_channel_moments_at(&total, 0);
     sf_moments_merge(m, &other);
 }
 
-void sf_moments_add_f32(sf_moments *m, size_t count, const float *x) {
-    add_scalars(m, array_moments(count, 1, x, NULL));
-}
-void sf_moments_add_f64(sf_moments *m, size_t count, const double *x) {
-    add_scalars(m, array_moments(count, 1, NULL, x));
-}
-
 /* The scalar sum of squares is the sum of the channels'. */
-static void add_vectors(sf_vector_moments *m, sf_channel_moments total) {
+void sf_vector_moments_merge_blocks(sf_vector_moments *m, const sf_block_moments *blocks) {
+    sf_channel_moments total = total_of(blocks);
     sf_vector_moments other = {0};
     other.count = total.count;
     other.nonfinite = total.nonfinite;
@@ -119,21 +126,26 @@ static void add_vectors(sf_vector_moments *m, sf_channel_moments total) {
     sf_vector_moments_merge(m, &other);
 }
 
-void sf_vector_moments_add_f32(sf_vector_moments *m, size_t count, const float *x) {
-    add_vectors(m, array_moments(count, 3, x, NULL));
-}
-void sf_vector_moments_add_f64(sf_vector_moments *m, size_t count, const double *x) {
-    add_vectors(m, array_moments(count, 3, NULL, x));
+void sf_channel_moments_merge_blocks(sf_channel_moments *m, const sf_block_moments *blocks) {
+    sf_channel_moments total = total_of(blocks);
+    sf_channel_moments_merge(m, &total);
 }
 
-void sf_channel_moments_add_f32(sf_channel_moments *m, size_t count, const float *x) {
-    sf_channel_moments total = array_moments(count, 3, x, NULL);
-    sf_channel_moments_merge(m, &total);
-}
-void sf_channel_moments_add_f64(sf_channel_moments *m, size_t count, const double *x) {
-    sf_channel_moments total = array_moments(count, 3, NULL, x);
-    sf_channel_moments_merge(m, &total);
-}
+/* An array in one piece. */
+#define ADD_ARRAY(kind, type, suffix, width)                                   \
+    void sf_##kind##_add_##suffix(sf_##kind *m, size_t count, const type *x) { \
+        sf_block_moments blocks;                                               \
+        sf_block_moments_begin(&blocks);                                       \
+        sf_block_moments_add_##width##suffix(&blocks, count, x);               \
+        sf_##kind##_merge_blocks(m, &blocks);                                  \
+    }
+
+ADD_ARRAY(moments, float, f32, )
+ADD_ARRAY(moments, double, f64, )
+ADD_ARRAY(vector_moments, float, f32, rows_)
+ADD_ARRAY(vector_moments, double, f64, rows_)
+ADD_ARRAY(channel_moments, float, f32, rows_)
+ADD_ARRAY(channel_moments, double, f64, rows_)
 
 void sf_weighted_moments_add_f64(sf_weighted_moments *m, size_t count, const double *x, const double *weights) {
     for (size_t i = 0; i < count; ++i) sf_weighted_moments_add(m, x[i], weights[i]);

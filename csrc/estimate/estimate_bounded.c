@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "sunfleck/estimate.h"
 
 #define MAX_BET 0.5    /* of the sequence, and … */
@@ -115,9 +116,9 @@ double sf_confidence_sequence_upper(const sf_confidence_sequence *c) {
 
 /* log of the capital of one who bets that the mean is above m; never rises with m. Factors are
  * between 1/4 and some 10, so that products of 16 neither overflow nor vanish. */
-static double log_capital(size_t n, const double *x, const double *bets, double m) {
+static double log_capital(size_t n, const double *x, const double *bets, double m, sf_watch *watch) {
     double log_sum = 0.0, most = m > 0.0 ? MAX_STAKE / m : (double)INFINITY;
-    for (size_t first = 0; first < n; first += 16) {
+    for (size_t first = 0; first < n && !sf_watch_step(watch, 16); first += 16) {
         double product = 1.0;
         size_t end = n - first < 16 ? n : first + 16;
         for (size_t i = first; i < end; ++i) product *= 1.0 + fmin(bets[i], most) * (x[i] - m);
@@ -127,12 +128,12 @@ static double log_capital(size_t n, const double *x, const double *bets, double 
 }
 
 /* The least mean at which that capital stays below exp(limit). */
-static double least_mean(size_t n, const double *x, const double *bets, double limit) {
+static double least_mean(size_t n, const double *x, const double *bets, double limit, sf_watch *watch) {
     double below = 0.0, above = 1.0;
-    if (log_capital(n, x, bets, 0.0) < limit) return 0.0;
-    for (int i = 0; i < BISECTIONS; ++i) {
+    if (log_capital(n, x, bets, 0.0, watch) < limit) return 0.0;
+    for (int i = 0; i < BISECTIONS && !sf_watch_stopped(watch); ++i) {
         double m = 0.5 * (below + above);
-        if (log_capital(n, x, bets, m) < limit)
+        if (log_capital(n, x, bets, m, watch) < limit)
             above = m;
         else
             below = m;
@@ -140,33 +141,46 @@ static double least_mean(size_t n, const double *x, const double *bets, double l
     return below;
 }
 
-static sf_status scale(size_t n, const double *x, double low, double high, double *scaled, sf_error *error) {
+static sf_status scale(size_t n, const double *x, double low, double high, double *scaled, sf_watch *watch,
+                       sf_error *error) {
     for (size_t i = 0; i < n; ++i) {
         if (!(x[i] >= low && x[i] <= high))
             return sf_fail(error, SF_STATUS_INVALID_VALUE, "sample %zu is %g, outside [%g, %g]", i, x[i], low, high);
         scaled[i] = (x[i] - low) / (high - low);
+        if (sf_watch_item(watch, i)) break;
     }
-    return SF_STATUS_OK;
+    return sf_watch_status(watch, error);
+}
+
+/* For a count fixed ahead: sqrt(2 log(2/alpha) / (n variance)). */
+static void make_bets(size_t n, const double *x, double limit, double *bets, sf_watch *watch) {
+    past before = {0};
+    for (size_t i = 0; i < n && !sf_watch_item(watch, i); ++i) {
+        bets[i] = sqrt(2.0 * limit / ((double)n * past_variance(&before)));
+        past_add(&before, x[i]);
+    }
 }
 
 sf_status sf_betting_interval_f64(size_t count, const double *x, double low, double high, double confidence,
-                                  double *lower, double *upper, sf_error *error) {
+                                  double *lower, double *upper, const sf_interrupt *interrupt, sf_error *error) {
     sf_status status = check(low, high, confidence, error);
     if (status != SF_STATUS_OK) return status;
     double *scaled = sf_aligned_alloc((2 * count + 1) * sizeof *scaled), *bets = scaled ? scaled + count : NULL;
     if (!scaled) return sf_fail_memory(error, "the bets", (2 * count + 1) * sizeof *scaled);
-    status = scale(count, x, low, high, scaled, error);
+    sf_watch watch;
+    sf_watch_begin(&watch, interrupt);
+    status = scale(count, x, low, high, scaled, &watch, error);
     if (status == SF_STATUS_OK) {
         double limit = log(2.0 / (1.0 - confidence));
-        past before = {0};
-        for (size_t i = 0; i < count; ++i) {
-            /* For a count fixed ahead: sqrt(2 log(2/alpha) / (n variance)). */
-            bets[i] = sqrt(2.0 * limit / ((double)count * past_variance(&before)));
-            past_add(&before, scaled[i]);
+        make_bets(count, scaled, limit, bets, &watch);
+        double least = least_mean(count, scaled, bets, limit, &watch);
+        for (size_t i = 0; i < count && !sf_watch_item(&watch, i); ++i) scaled[i] = 1.0 - scaled[i];
+        double most = least_mean(count, scaled, bets, limit, &watch);
+        status = sf_watch_status(&watch, error);
+        if (status == SF_STATUS_OK) {
+            *lower = low + (high - low) * least;
+            *upper = high - (high - low) * most;
         }
-        *lower = low + (high - low) * least_mean(count, scaled, bets, limit);
-        for (size_t i = 0; i < count; ++i) scaled[i] = 1.0 - scaled[i];
-        *upper = high - (high - low) * least_mean(count, scaled, bets, limit);
     }
     sf_aligned_free(scaled);
     return status;

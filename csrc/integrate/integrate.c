@@ -272,6 +272,7 @@ sf_status sf_integrate_vector(sf_integrand function, void *user, const sf_integr
                       .components = components,
                       .volume = 1.0,
                       .independent = options->pattern == SF_PATTERN_RANDOM};
+    sf_watch_begin(&in.watch, options->interrupt);
     uint64_t points = 0;
     status = prepare(&in, results, &points);
     if (status == SF_STATUS_OK) status = run(&in, points);

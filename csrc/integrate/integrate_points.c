@@ -63,11 +63,11 @@ sf_status sf_integration_find_randomization(integration *in, uint64_t total) {
     return status;
 }
 
-/* Makes the sets of `total` points; of a pattern that grows, once for all. */
+/* Makes the sets of `total` points, or some where the watch says stop; of a pattern that grows, once for all. */
 static sf_status make_sets(integration *in, uint64_t total) {
     if (in->grows && in->replicate[0].set) return SF_STATUS_OK;
     sf_integration_forget(in);
-    for (uint32_t r = 0; r < in->options.replicates; ++r) {
+    for (uint32_t r = 0; r < in->options.replicates && !sf_watch_ask(&in->watch); ++r) {
         replicate *one = &in->replicate[r];
         sf_point_set_destroy(one->set);
         one->set = NULL;
@@ -163,7 +163,7 @@ static sf_status take_block(integration *in, uint64_t first, size_t rows, int *s
 sf_status sf_integration_take_points(integration *in, uint64_t points, int *stopped) {
     sf_status status = make_sets(in, points);
     uint64_t first = in->grows ? in->points : 0;
-    *stopped = 0;
+    *stopped = sf_watch_stopped(&in->watch);
     while (status == SF_STATUS_OK && first < points && !*stopped) {
         size_t rows = points - first < in->block_rows ? (size_t)(points - first) : in->block_rows;
         status = take_block(in, first, rows, stopped);

@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "base/platform.h"
 #include "sunfleck/estimate.h"
 #include "sunfleck/integrate.h"
@@ -58,6 +59,7 @@ typedef struct integration {
     replicate *replicate;
     component *component;
     tally *tallies;
+    sf_watch watch;
 } integration;
 
 /* ---- points (integrate_points.c) ---- */

@@ -12,13 +12,15 @@
 #include "sunfleck/discrete.h"
 #include "sunfleck/elementary.h"
 
-sf_status sf_check_weights(const char *who, const double *weights, size_t count, double *largest, sf_error *error) {
+sf_status sf_check_weights(const char *who, const double *weights, size_t count, double *largest, sf_watch *watch,
+                           sf_error *error) {
     *largest = 0.0;
     for (size_t i = 0; i < count; ++i) {
         if (!(weights[i] >= 0.0 && weights[i] < (double)INFINITY))
             return sf_fail(error, SF_STATUS_INVALID_VALUE,
                            "%s: weights[%zu] is %.17g; it must be finite and at least 0", who, i, weights[i]);
         if (weights[i] > *largest) *largest = weights[i];
+        if (sf_watch_item(watch, i)) return sf_watch_status(watch, error);
     }
     if (*largest > 0.0) return SF_STATUS_OK;
     return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s: all %zu weights are 0; one must be positive", who, count);
@@ -39,14 +41,15 @@ sf_status sf_check_unit_f64(const char *who, const char *name, const double *val
 }
 
 /* Fills up the columns of `share`, whose mean is 1: those below 1 take what they lack from one that
- * has more, which may then lack itself. `order` has room for n. */
-static void fill_columns(double *share, size_t n, uint32_t *order, float *keep, uint32_t *alias) {
+ * has more, which may then lack itself. `order` has room for n. Ends early where the watch says stop. */
+static void fill_columns(double *share, size_t n, uint32_t *order, float *keep, uint32_t *alias, sf_watch *watch) {
     size_t small = 0, large = n, most = 0; /* small ones from the front of `order`, large from the back */
     for (size_t i = 0; i < n; ++i) {
         order[share[i] < 1.0 ? small++ : --large] = (uint32_t)i;
         if (share[i] > share[most]) most = i;
+        if (sf_watch_item(watch, i)) return;
     }
-    while (small > 0 && large < n) {
+    for (size_t filled = 0; small > 0 && large < n; ++filled) {
         uint32_t s = order[--small], l = order[large];
         keep[s] = (float)share[s];
         alias[s] = l;
@@ -55,6 +58,7 @@ static void fill_columns(double *share, size_t n, uint32_t *order, float *keep, 
             ++large;
             order[small++] = l;
         }
+        if (sf_watch_item(watch, filled)) return;
     }
     /* What is left is full, but for rounding. A column that lost its whole weight must not come
      * back: it goes to the heaviest. */
@@ -70,24 +74,39 @@ static void fill_columns(double *share, size_t n, uint32_t *order, float *keep, 
     }
 }
 
-sf_status sf_alias_build(const double *weights, size_t count, float *keep, uint32_t *alias, sf_error *error) {
-    double largest, total = 0.0;
+/* Each weight over the largest, and their sum. */
+static double scale_weights(const double *weights, size_t count, double largest, double *scaled, sf_watch *watch) {
+    double total = 0.0;
+    for (size_t i = 0; i < count && !sf_watch_item(watch, i); ++i) total += scaled[i] = weights[i] / largest;
+    return total;
+}
+
+static sf_status build(const double *weights, size_t count, float *keep, uint32_t *alias, sf_watch *watch,
+                       sf_error *error) {
+    double largest;
     if (count < 1 || count > UINT32_MAX)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "alias table: count is %zu; it must be 1 .. 2^32 - 1", count);
-    sf_status status = sf_check_weights("alias table", weights, count, &largest, error);
+    sf_status status = sf_check_weights("alias table", weights, count, &largest, watch, error);
     if (status) return status;
     double *share = malloc(count * sizeof *share);
     uint32_t *order = malloc(count * sizeof *order);
     if (share && order) {
-        for (size_t i = 0; i < count; ++i) total += share[i] = weights[i] / largest;
-        for (size_t i = 0; i < count; ++i) share[i] *= (double)count / total;
-        fill_columns(share, count, order, keep, alias);
+        double total = scale_weights(weights, count, largest, share, watch);
+        for (size_t i = 0; i < count && !sf_watch_item(watch, i); ++i) share[i] *= (double)count / total;
+        if (!sf_watch_stopped(watch)) fill_columns(share, count, order, keep, alias, watch);
+        status = sf_watch_status(watch, error);
     } else {
         status = sf_fail_memory(error, "an alias table", count * (sizeof *share + sizeof *order));
     }
     free(share);
     free(order);
     return status;
+}
+
+sf_status sf_alias_build(const double *weights, size_t count, float *keep, uint32_t *alias, sf_error *error) {
+    sf_watch watch;
+    sf_watch_begin(&watch, NULL);
+    return build(weights, count, keep, alias, &watch, error);
 }
 
 /* ---- the table as an object ---- */
@@ -107,10 +126,13 @@ void sf_alias_table_destroy(sf_alias_table *table) {
     free(table);
 }
 
-sf_status sf_alias_table_create(const double *weights, size_t count, sf_alias_table **table, sf_error *error) {
+sf_status sf_alias_table_create(const double *weights, size_t count, sf_alias_table **table,
+                                const sf_interrupt *interrupt, sf_error *error) {
     *table = NULL;
-    double largest, total = 0.0;
-    sf_status status = sf_check_weights("alias table", weights, count, &largest, error);
+    double largest;
+    sf_watch watch;
+    sf_watch_begin(&watch, interrupt);
+    sf_status status = sf_check_weights("alias table", weights, count, &largest, &watch, error);
     if (status) return status;
     sf_alias_table *made = calloc(1, sizeof *made);
     if (!made) return sf_fail_memory(error, "an alias table", sizeof *made);
@@ -121,15 +143,17 @@ sf_status sf_alias_table_create(const double *weights, size_t count, sf_alias_ta
     if (!made->keep || !made->alias || !made->pdf)
         status = sf_fail_memory(error, "an alias table", count * 16);
     else
-        status = sf_alias_build(weights, count, made->keep, made->alias, error);
-    if (status) {
-        sf_alias_table_destroy(made);
-        return status;
+        status = build(weights, count, made->keep, made->alias, &watch, error);
+    if (!status) {
+        double total = scale_weights(weights, count, largest, made->pdf, &watch);
+        for (size_t i = 0; i < count && !sf_watch_item(&watch, i); ++i) made->pdf[i] /= total;
+        status = sf_watch_status(&watch, error);
     }
-    for (size_t i = 0; i < count; ++i) total += made->pdf[i] = weights[i] / largest;
-    for (size_t i = 0; i < count; ++i) made->pdf[i] /= total;
-    *table = made;
-    return SF_STATUS_OK;
+    if (status)
+        sf_alias_table_destroy(made);
+    else
+        *table = made;
+    return status;
 }
 
 size_t sf_alias_table_count(const sf_alias_table *table) { return table->count; }

@@ -38,8 +38,10 @@ static line marginal_of(const sf_piecewise *p) {
 }
 
 /* Fills the distribution and the guide of n weights, scaled by 1 / largest; returns the sum of the
- * scaled. Of a row without weight, whose density is 0 anyway, makes a uniform one. */
-static double fill_line(const double *weights, size_t n, double largest, double *cdf, uint32_t *guide) {
+ * scaled. Of a row without weight, whose density is 0 anyway, makes a uniform one. Ends early where the
+ * watch says stop. */
+static double fill_line(const double *weights, size_t n, double largest, double *cdf, uint32_t *guide,
+                        sf_watch *watch) {
     double total = 0.0, sum = 0.0;
     size_t last = n;
     for (size_t i = 0; i < n; ++i) total += weights[i] / largest;
@@ -47,6 +49,7 @@ static double fill_line(const double *weights, size_t n, double largest, double 
     for (size_t i = 0; i < n; ++i) {
         cdf[i] = i < last && sum < total ? (total > 0.0 ? sum / total : (double)i / (double)n) : 1.0;
         sum += total > 0.0 ? weights[i] / largest : 0.0;
+        if (sf_watch_item(watch, i)) return 0.0;
     }
     if (!(total > 0.0))
         for (size_t i = 0; i < n; ++i) cdf[i] = (double)i / (double)n;
@@ -54,7 +57,9 @@ static double fill_line(const double *weights, size_t n, double largest, double 
     for (size_t k = 0, cell = 0; k <= n; ++k) {
         while (cell + 1 < n && cdf[cell + 1] <= (double)k / (double)n) ++cell;
         guide[k] = (uint32_t)cell;
+        if (sf_watch_item(watch, k)) return 0.0;
     }
+    sf_watch_step(watch, 8 * n);
     return total;
 }
 
@@ -154,14 +159,16 @@ static sf_status fill_f64(const sf_piecewise *p, point_function *function, const
 /* ---- the interface ---- */
 
 static sf_status create(const double *weights, size_t columns, size_t rows, size_t width, sf_piecewise **piecewise,
-                        sf_error *error) {
+                        const sf_interrupt *interrupt, sf_error *error) {
     const size_t most = (size_t)1 << 24;
     double largest, *sums = NULL;
     *piecewise = NULL;
     if (columns < 1 || columns > most || rows < 1 || rows > most)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "piecewise: %zu x %zu cells; each must be 1 .. 2^24", columns,
                        rows);
-    sf_status status = sf_check_weights("piecewise", weights, columns * rows, &largest, error);
+    sf_watch watch;
+    sf_watch_begin(&watch, interrupt);
+    sf_status status = sf_check_weights("piecewise", weights, columns * rows, &largest, &watch, error);
     if (status) return status;
     size_t size = rows * (columns + 1) + rows + 1;
     sf_piecewise *made = calloc(1, sizeof *made);
@@ -177,12 +184,15 @@ static sf_status create(const double *weights, size_t columns, size_t rows, size
         goto fail;
     }
     double heaviest = 0.0;
-    for (size_t r = 0; r < rows; ++r) {
+    for (size_t r = 0; r < rows && !sf_watch_stopped(&watch); ++r) {
         size_t at = r * (columns + 1);
-        sums[r] = fill_line(weights + r * columns, columns, largest, made->cdf + at, made->guide + at);
+        sums[r] = fill_line(weights + r * columns, columns, largest, made->cdf + at, made->guide + at, &watch);
         heaviest = sums[r] > heaviest ? sums[r] : heaviest;
     }
-    fill_line(sums, rows, heaviest, made->cdf + rows * (columns + 1), made->guide + rows * (columns + 1));
+    size_t end = rows * (columns + 1);
+    if (!sf_watch_stopped(&watch)) fill_line(sums, rows, heaviest, made->cdf + end, made->guide + end, &watch);
+    status = sf_watch_status(&watch, error);
+    if (status) goto fail;
     free(sums);
     *piecewise = made;
     return SF_STATUS_OK;
@@ -192,13 +202,14 @@ fail:
     return status;
 }
 
-sf_status sf_piecewise_create_1d(const double *weights, size_t count, sf_piecewise **piecewise, sf_error *error) {
-    return create(weights, count, 1, 1, piecewise, error);
+sf_status sf_piecewise_create_1d(const double *weights, size_t count, sf_piecewise **piecewise,
+                                 const sf_interrupt *interrupt, sf_error *error) {
+    return create(weights, count, 1, 1, piecewise, interrupt, error);
 }
 
 sf_status sf_piecewise_create_2d(const double *weights, size_t columns, size_t rows, sf_piecewise **piecewise,
-                                 sf_error *error) {
-    return create(weights, columns, rows, 2, piecewise, error);
+                                 const sf_interrupt *interrupt, sf_error *error) {
+    return create(weights, columns, rows, 2, piecewise, interrupt, error);
 }
 
 void sf_piecewise_destroy(sf_piecewise *piecewise) {

@@ -74,11 +74,11 @@ static void fill_share(void *user, unsigned share) {
 
 /* Threads pay from some 2^16 words each, as starting one takes as long as making them; a team's,
  * which need not be started, from 2^15. */
-static unsigned useful_threads(const sf_points_options *options, size_t count) {
+static unsigned useful_threads(const sf_point_set *set, size_t count, uint32_t asked, const sf_thread_team *team) {
     enum { MAX_THREADS = SF_THREAD_TEAM_MAX + 1 };
-    size_t least_words = (size_t)1 << (options->team ? 15 : 16);
-    unsigned threads = options->threads ? options->threads : sf_processor_count();
-    size_t most = count / (least_words / options->dims + 1);
+    size_t least_words = (size_t)1 << (team ? 15 : 16);
+    unsigned threads = asked ? asked : sf_processor_count();
+    size_t most = count / (least_words / set->options.dims + 1);
     if (threads > MAX_THREADS) threads = MAX_THREADS;
     return most < threads ? (unsigned)most + !most : threads;
 }
@@ -89,7 +89,7 @@ static unsigned useful_threads(const sf_points_options *options, size_t count) {
 #define STREAM_BYTES ((size_t)12 << 20)
 
 static void share_out(fill_job *jobs, unsigned threads, const sf_point_set *set, uint64_t first, size_t count,
-                      sf_number_type type, void *out) {
+                      size_t whole, sf_number_type type, void *out) {
     size_t done = 0, share = count / threads, row_bytes = set->options.dims * size_of(type);
     for (unsigned i = 0; i < threads; ++i, done += share)
         jobs[i] = (fill_job){.set = set,
@@ -97,7 +97,7 @@ static void share_out(fill_job *jobs, unsigned threads, const sf_point_set *set,
                              .first = first + done,
                              .rows = i + 1 == threads ? count - done : share,
                              .type = type,
-                             .streams = count * row_bytes >= STREAM_BYTES,
+                             .streams = whole * row_bytes >= STREAM_BYTES,
                              .out = (char *)out + done * row_bytes,
                              .scratch = jobs[0].scratch + i * scratch_words(&set->options)};
 }
@@ -110,26 +110,31 @@ static void fill_item(void *user, unsigned worker, size_t share) {
 /* What even the quickest pattern takes some 50 us for. */
 #define LONG_WORDS ((size_t)1 << 19)
 
-static void work_shares(fill_job *jobs, unsigned threads, const sf_points_options *options) {
-    int is_long = jobs[0].rows >= LONG_WORDS / threads / options->dims;
-    if (threads > 1 && options->team && sf_thread_team_run(options->team, threads, is_long, fill_share, jobs)) return;
+static void work_shares(fill_job *jobs, unsigned threads, sf_thread_team *team) {
+    int is_long = jobs[0].rows >= LONG_WORDS / threads / jobs[0].set->options.dims;
+    if (threads > 1 && team && sf_thread_team_run(team, threads, is_long, fill_share, jobs)) return;
     sf_parallel_for(threads, threads, fill_item, jobs);
 }
 
-static sf_status fill(const sf_point_set *set, uint64_t first, size_t count, sf_number_type type, void *out,
-                      sf_error *error) {
+sf_status sf_point_set_fill(const sf_point_set *set, uint32_t asked, sf_thread_team *team, uint64_t first, size_t count,
+                            size_t whole, sf_number_type type, void *out, sf_error *error) {
     sf_status status = sf_points_check_range(&set->options, first, count, error);
     if (status != SF_STATUS_OK || count == 0) return status;
-    unsigned threads = useful_threads(&set->options, count);
+    unsigned threads = useful_threads(set, count, asked, team);
     size_t bytes = threads * (sizeof(fill_job) + scratch_words(&set->options) * sizeof(uint32_t)) + SF_ALIGNMENT;
     uint32_t *scratch = sf_aligned_alloc(bytes);
     if (!scratch) return sf_fail_memory(error, "the scratch of a fill", bytes);
     fill_job *jobs = (fill_job *)(void *)(scratch + threads * scratch_words(&set->options));
     jobs[0].scratch = scratch;
-    share_out(jobs, threads, set, first, count, type, out);
-    work_shares(jobs, threads, &set->options);
+    share_out(jobs, threads, set, first, count, whole, type, out);
+    work_shares(jobs, threads, team);
     sf_aligned_free(scratch);
     return SF_STATUS_OK;
+}
+
+static sf_status fill(const sf_point_set *set, uint64_t first, size_t count, sf_number_type type, void *out,
+                      sf_error *error) {
+    return sf_point_set_fill(set, set->options.threads, set->options.team, first, count, count, type, out, error);
 }
 
 static sf_status fill_once(const sf_points_options *options, size_t count, sf_number_type type, void *out,

@@ -62,6 +62,12 @@ sf_status sf_points_check_range(const sf_points_options *options, uint64_t first
 sf_status sf_point_set_init(sf_point_set *set, const sf_points_options *options, sf_error *error);
 void sf_point_set_release(sf_point_set *set);
 
+/* points_fill.c: fills from `first` with up to `threads` threads (0: one for each processor) of the team, or
+ * started for the call where it is NULL, whatever the set's own options say; a part of an array of `whole` rows, whose
+ * size decides whether it is written past the caches. */
+sf_status sf_point_set_fill(const sf_point_set *set, uint32_t threads, sf_thread_team *team, uint64_t first,
+                            size_t count, size_t whole, sf_number_type type, void *out, sf_error *error);
+
 /* net.c: sobol and sz. `rows` writes numbers of a type, `make` words with nested scrambling. */
 sf_status sf_net_prepare(sf_point_set *set, sf_error *error);
 void sf_net_release(sf_net_tables *tables);

@@ -136,7 +136,7 @@ static sf_status tabulate_environment(sf_sky *sky, sf_error *error) {
         }
     }
     sky->spread = sky->total * sky->total / (4 * PI * squares);
-    sf_status status = sf_piecewise_create_2d(weights, columns, rows, &sky->table, error);
+    sf_status status = sf_piecewise_create_2d(weights, columns, rows, &sky->table, NULL, error);
     free(weights);
     return status;
 }

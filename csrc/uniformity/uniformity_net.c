@@ -26,6 +26,7 @@ typedef struct net {
     uint32_t *scratch;               /* [threads][count + dims] */
     unsigned threads, shares, level; /* shares: of a level's shapes, one a thread at work */
     sf_atomic_size failed;           /* 1 once an interval of the level has been found wrong */
+    sf_watch watch;
 } net;
 
 static sf_status measure_count(net *n, sf_error *error) {
@@ -52,12 +53,14 @@ static uint32_t digits_of(const net *n, double x) {
     return scaled < (double)n->count ? (uint32_t)(int64_t)scaled : (uint32_t)(n->count - 1);
 }
 
-/* Whether all intervals of base^-digits[k] in dimension k hold the same number of points. */
-static int is_balanced(const net *n, const uint32_t *digits, uint32_t *counts) {
+/* Whether all intervals of base^-digits[k] in dimension k hold the same number of points; either where the watch
+ * says stop. */
+static int is_balanced(net *n, unsigned worker, const uint32_t *digits, uint32_t *counts) {
     uint32_t cells[BLOCK], held = n->powers[n->levels - n->level];
     memset(counts, 0, n->powers[n->level] * sizeof *counts);
     for (size_t first = 0; first < n->count; first += BLOCK) {
         size_t rows = n->count - first < BLOCK ? n->count - first : BLOCK;
+        if (sf_watch_step_of(&n->watch, worker, BLOCK * (uint64_t)n->dims)) return 0;
         memset(cells, 0, sizeof cells);
         for (uint32_t k = 0; k < n->dims; ++k) {
             const uint32_t *column = n->digits + k * n->count + first;
@@ -97,7 +100,7 @@ static void test_share(void *user, unsigned worker, size_t share) {
     size_t shape = 0;
     do {
         if (shape++ % n->shares != share) continue;
-        if (!is_balanced(n, digits, counts)) sf_atomic_store(&n->failed, 1);
+        if (!is_balanced(n, worker, digits, counts)) sf_atomic_store(&n->failed, 1);
     } while (!sf_atomic_load(&n->failed) && advance(digits, n->dims));
 }
 
@@ -120,7 +123,8 @@ static sf_status climb(net *n, uint32_t effort, uint32_t *t, sf_error *error) {
                            " allows",
                            n->levels - n->level + 1, level_steps, most, effort);
         n->shares = level_steps < STEPS_OF_A_THREAD ? 1 : n->threads;
-        sf_parallel_for(n->shares, n->shares, test_share, n);
+        sf_parallel_for_watched(n->shares, n->shares, test_share, n, &n->watch);
+        if (sf_watch_stopped(&n->watch)) return sf_watch_status(&n->watch, error);
         if (sf_atomic_load(&n->failed)) break;
     }
     *t = n->levels - n->level + 1;
@@ -132,18 +136,19 @@ static sf_status allocate(net *n, const double *points, sf_error *error) {
     n->digits = sf_aligned_alloc(bytes);
     if (!n->digits) return sf_fail_memory(error, "the digits of the points", bytes);
     n->scratch = n->digits + rows;
-    for (size_t i = 0; i < n->count; ++i)
+    for (size_t i = 0; i < n->count && !sf_watch_step(&n->watch, 4 * (uint64_t)n->dims); ++i)
         for (uint32_t k = 0; k < n->dims; ++k) n->digits[k * n->count + i] = digits_of(n, points[i * n->dims + k]);
     return SF_STATUS_OK;
 }
 
 sf_status sf_net_t_value(const double *points, size_t count, uint32_t dims, uint32_t base, uint32_t effort,
-                         uint32_t threads, uint32_t *t, sf_error *error) {
+                         uint32_t threads, uint32_t *t, const sf_interrupt *interrupt, sf_error *error) {
     if (base < 2 || base > 65536)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "base is %" PRIu32 "; give 2 to 65536", base);
-    sf_status status = sf_uniformity_check(points, count, dims, 0, error);
-    if (status != SF_STATUS_OK) return status;
     net n = {.kernels = sf_uniformity_kernels_at(sf_isa_active()), .count = count, .dims = dims, .base = base};
+    sf_watch_begin(&n.watch, interrupt);
+    sf_status status = sf_uniformity_check(points, count, dims, 0, &n.watch, error);
+    if (status != SF_STATUS_OK) return status;
     status = measure_count(&n, error);
     if (status != SF_STATUS_OK) return status;
     for (uint32_t power = base; (power & 1) == 0; power >>= 1) ++n.bits;

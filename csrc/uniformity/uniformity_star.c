@@ -34,6 +34,7 @@ typedef struct exact_search {
     double *sorted;                    /* coordinate 1 of the points swept, rising; then 1 */
     double *sides;                     /* [dims][count + 1]: the sides tried in each dimension */
     uint32_t *inside;                  /* [dims][count]: the points inside, in the order of coordinate 0 */
+    sf_watch *watch;
 } exact_search;
 
 static int compare_doubles(const void *left, const void *right) {
@@ -70,7 +71,7 @@ static void try_column(exact_search *s, size_t swept, double volume) {
 static void sweep(exact_search *s, const uint32_t *inside, size_t count, double volume) {
     const double *x = s->points->values, *y = x + s->points->stride;
     s->sorted[0] = 1.0;
-    for (size_t i = 0; i < count;) {
+    for (size_t i = 0; i < count && !sf_watch_step(s->watch, i + 32);) {
         double side = x[inside[i]];
         if (!s->closed) try_column(s, i, volume * side);
         for (; i < count && x[inside[i]] == side; ++i) insert(s->sorted, i + 1, y[inside[i]]);
@@ -102,6 +103,7 @@ static void visit(exact_search *s, uint32_t dimension, const uint32_t *inside, s
     uint32_t *kept = s->inside + dimension * s->points->count;
     for (size_t i = 0, n = list_sides(s, dimension, inside, count); i < n; ++i) {
         size_t within = 0;
+        if (sf_watch_step(s->watch, count)) return;
         for (size_t k = 0; k < count; ++k) {
             kept[within] = inside[k];
             within += s->closed ? x[inside[k]] <= sides[i] : x[inside[k]] < sides[i];
@@ -115,19 +117,23 @@ static void visit(exact_search *s, uint32_t dimension, const uint32_t *inside, s
 /* In one dimension, of sorted points: Niederreiter 1992, "Random number generation and quasi-Monte
  * Carlo methods", theorem 2.6. */
 static void scan(exact_search *s) {
-    double greatest, least;
-    s->kernels->extremes(s->points->count, s->closed_share, s->points->values, 1.0, &greatest, &least);
-    s->best = greatest;
-    s->kernels->extremes(s->points->count, s->open_share, s->points->values, 1.0, &greatest, &least);
-    s->best = larger(s->best, -least);
+    enum { RUN = 1 << 16 };
+    for (size_t first = 0, n; first < s->points->count && !sf_watch_step(s->watch, RUN); first += n) {
+        double greatest, least;
+        n = s->points->count - first < RUN ? s->points->count - first : RUN;
+        s->kernels->extremes(n, s->closed_share + first, s->points->values + first, 1.0, &greatest, &least);
+        s->best = larger(s->best, greatest);
+        s->kernels->extremes(n, s->open_share + first, s->points->values + first, 1.0, &greatest, &least);
+        s->best = larger(s->best, -least);
+    }
 }
 
-static sf_status search_exactly(const sf_columns *points, double *star, sf_error *error) {
+static sf_status search_exactly(const sf_columns *points, double *star, sf_watch *watch, sf_error *error) {
     size_t n = points->count, row = n + 1;
     size_t bytes = (3 + points->dims) * row * sizeof(double) + (points->dims + 1) * n * sizeof(uint32_t);
     double *memory = malloc(bytes);
     if (!memory) return sf_fail_memory(error, "the boxes of the star discrepancy", bytes);
-    exact_search s = {.points = points, .kernels = sf_uniformity_kernels_at(sf_isa_active())};
+    exact_search s = {.points = points, .kernels = sf_uniformity_kernels_at(sf_isa_active()), .watch = watch};
     s.closed_share = memory;
     s.open_share = memory + row;
     s.sorted = memory + 2 * row;
@@ -135,15 +141,16 @@ static sf_status search_exactly(const sf_columns *points, double *star, sf_error
     s.inside = (uint32_t *)(void *)(s.sides + points->dims * row);
     uint32_t *all = s.inside + points->dims * n;
     for (size_t j = 0; j < n; ++j) all[j] = (uint32_t)j;
-    for (size_t j = 0; j <= n; ++j) {
+    for (size_t j = 0; j <= n && !sf_watch_item(watch, j); ++j) {
         s.closed_share[j] = (double)(j + 1) / (double)n;
         s.open_share[j] = (double)j / (double)n;
     }
     if (points->dims == 1) scan(&s);
     for (s.closed = 0; points->dims > 1 && s.closed < 2; ++s.closed) visit(&s, points->dims - 1, all, n, 1.0);
-    *star = s.best;
     free(memory);
-    return SF_STATUS_OK;
+    sf_status status = sf_watch_status(watch, error);
+    if (status == SF_STATUS_OK) *star = s.best;
+    return status;
 }
 
 /* ---- between bounds ----
@@ -160,6 +167,7 @@ typedef struct cover {
     double *low, *high;
     uint32_t *candidates; /* the points; those below `high` come first */
     double lower, upper;
+    sf_watch *watch; /* asked with every box; the cover is then cut short */
 } cover;
 
 static double coordinate(const cover *c, uint32_t point, uint32_t k) {
@@ -201,6 +209,8 @@ static size_t keep_below(cover *c, size_t count, uint32_t k, double side) {
 /* Covers [low, high], where low is 0 from dimension `first` on: one box of the full weight at the
  * upper corner, and a slab below it in each of those dimensions. */
 static void cover_box(cover *c, uint32_t first, size_t count) {
+    uint64_t values = (uint64_t)c->dims * ((c->points ? count : 0) + 8);
+    if (sf_watch_step(c->watch, values)) return;
     double fixed = 1.0, volume = 1.0;
     for (uint32_t k = 0; k < c->dims; ++k) {
         if (k < first) fixed *= c->low[k];
@@ -244,8 +254,8 @@ static double find_weight(cover *c, uint64_t boxes) {
         enough = few;
         few *= 0.5;
         cover_cube(c, few);
-    } while (c->boxes <= boxes);
-    while (enough - few > 0.02 * few) {
+    } while (c->boxes <= boxes && !sf_watch_stopped(c->watch));
+    while (enough - few > 0.02 * few && !sf_watch_stopped(c->watch)) {
         double middle = 0.5 * (enough + few);
         cover_cube(c, middle);
         *(c->boxes <= boxes ? &enough : &few) = middle;
@@ -253,21 +263,23 @@ static double find_weight(cover *c, uint64_t boxes) {
     return enough;
 }
 
-static sf_status search_bounds(const sf_columns *points, uint64_t boxes, double *lower, double *upper,
+static sf_status search_bounds(const sf_columns *points, uint64_t boxes, double *lower, double *upper, sf_watch *watch,
                                sf_error *error) {
     size_t bytes = 2 * points->dims * sizeof(double) + points->count * sizeof(uint32_t);
     double *memory = malloc(bytes);
     if (!memory) return sf_fail_memory(error, "the cover of the star discrepancy", bytes);
-    cover c = {.dims = points->dims, .low = memory, .high = memory + points->dims};
+    cover c = {.dims = points->dims, .low = memory, .high = memory + points->dims, .watch = watch};
     c.candidates = (uint32_t *)(void *)(memory + 2 * points->dims);
     for (size_t i = 0; i < points->count; ++i) c.candidates[i] = (uint32_t)i;
     double weight = find_weight(&c, boxes);
     c.points = points;
     c.most = UINT64_MAX;
     cover_cube(&c, weight);
+    free(memory);
+    sf_status status = sf_watch_status(watch, error);
+    if (status != SF_STATUS_OK) return status;
     *lower = c.lower;
     *upper = c.upper < 1.0 ? c.upper : 1.0;
-    free(memory);
     return SF_STATUS_OK;
 }
 
@@ -279,24 +291,27 @@ static double exact_steps(size_t count, uint32_t dims) {
 }
 
 sf_status sf_star_discrepancy(const double *points, size_t count, uint32_t dims, uint64_t boxes, double *lower,
-                              double *upper, sf_error *error) {
-    sf_status status = sf_uniformity_check(points, count, dims, 0, error);
+                              double *upper, const sf_interrupt *interrupt, sf_error *error) {
+    sf_watch watch;
+    sf_watch_begin(&watch, interrupt);
+    sf_status status = sf_uniformity_check(points, count, dims, 0, &watch, error);
     if (status != SF_STATUS_OK) return status;
     if (count > UINT32_MAX)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "there are %zu points; give at most 4294967295", count);
     if (boxes < 1 || boxes > MAX_BOXES)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "boxes is %" PRIu64 "; give 1 to %" PRIu64, boxes, MAX_BOXES);
-    size_t *order = sf_order_by_first(points, count, dims);
-    if (!order) return sf_fail_memory(error, "the order of the points", count * sizeof *order);
+    size_t *order;
+    status = sf_order_by_first(points, count, dims, &order, &watch, error);
+    if (status != SF_STATUS_OK) return status;
     sf_columns columns;
-    status = sf_columns_init(&columns, points, count, dims, order, error);
+    status = sf_columns_init(&columns, points, count, dims, order, &watch, error);
     free(order);
     if (status != SF_STATUS_OK) return status;
     if (exact_steps(count, dims) <= EXACT_STEPS) {
-        status = search_exactly(&columns, lower, error);
-        *upper = *lower;
+        status = search_exactly(&columns, lower, &watch, error);
+        if (status == SF_STATUS_OK) *upper = *lower;
     } else {
-        status = search_bounds(&columns, boxes, lower, upper, error);
+        status = search_bounds(&columns, boxes, lower, upper, &watch, error);
     }
     sf_columns_release(&columns);
     return status;

@@ -11,12 +11,11 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
 
-#include <algorithm>
 #include <array>
-#include <chrono>
 #include <mutex>
 
 #include "away.h"
+#include "interrupt.h"
 #include "sunfleck/base.h"
 #include "turn.h"
 
@@ -53,34 +52,20 @@ void call(Function &&function) {
     raise_unless_ok(status, error);
 }
 
-// Calls work(first, count) for pieces of `total` in order, from a thread without the GIL, until one fails. Between
-// pieces, about twenty times a second, Python's signal handlers run; what they raise (Ctrl-C) ends it. Pieces start
-// at `smallest` and grow while they take less than 10 ms, so that neither short work nor long pays for the asking.
-template <class Work>
-sf_status in_pieces(size_t total, size_t smallest, Work &&work) {
-    using clock = std::chrono::steady_clock;
-    using std::chrono::milliseconds;
-    if (total <= smallest) return work(size_t(0), total);
-    clock::time_point asked = clock::now(), begun = asked;
-    for (size_t done = 0, piece = smallest; done < total;) {
-        size_t count = std::min(piece, total - done);
-        sf_status status = work(done, count);
-        if (status != SF_STATUS_OK) return status;
-        done += count;
-        clock::time_point now = clock::now();
-        if (now - begun < milliseconds(10))
-            piece *= 2;
-        else if (now - begun > milliseconds(30))
-            piece = std::max(smallest, piece / 2);
-        if (now - asked > milliseconds(50)) {
-            if (interpreter_is_leaving()) return SF_STATUS_OK;  // what is missing nobody will see
-            nb::gil_scoped_acquire acquired;
-            if (PyErr_CheckSignals()) throw nb::python_error();
-            asked = clock::now();
-        }
-        begun = clock::now();
+// The same for what may run long: function(const sf_interrupt *, sf_error *). What Python's signal handlers raise
+// meanwhile (Ctrl-C) ends it and is raised.
+template <class Function>
+void call_interruptibly(Function &&function) {
+    signal_watch watch;
+    sf_error error;
+    error.message[0] = '\0';
+    sf_status status;
+    {
+        away from_python;
+        status = function(&watch.interrupt, &error);
     }
-    return SF_STATUS_OK;
+    watch.raise_what_was_raised();
+    raise_unless_ok(status, error);
 }
 
 // A C struct that threads share, and the lock by which they take turns. No thread waits for the lock while it has the
@@ -105,22 +90,20 @@ struct shared {
     // Calls function(&value, first, count) for pieces of `total`; the struct is as before where Ctrl-C ended it.
     template <class Function>
     void use_in_pieces(size_t total, size_t smallest, Function &&function) {
-        call([&](sf_error *) {
+        call_interruptibly([&](const sf_interrupt *interrupt, sf_error *error) {
             std::lock_guard<turn_lock> lock(turn);
-            auto work = [&](size_t first, size_t count) {
+            auto work = [&](size_t first, size_t count, sf_error *) {
                 whole_for_forks whole;
                 function(&value, first, count);
                 return SF_STATUS_OK;
             };
-            if (total <= smallest) return work(0, total);
+            if (total <= smallest) return work(0, total, error);
             const T before = value;
-            try {
-                return in_pieces(total, smallest, work);
-            } catch (...) {
-                whole_for_forks whole;
-                value = before;
-                throw;
-            }
+            sf_status status = in_pieces(total, smallest, interrupt, error, work);
+            if (status == SF_STATUS_OK) return status;
+            whole_for_forks whole;
+            value = before;
+            return status;
         });
     }
 

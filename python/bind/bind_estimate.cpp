@@ -15,20 +15,34 @@ namespace {
 using moments = shared<sf_moments>;
 using vector_moments = shared<sf_vector_moments>;
 
-template <class T, void (*Add)(sf_moments *, size_t, const T *)>
-void add(moments &m, flat_array<const T> x) {
-    m.use([&](sf_moments *now, sf_error *) {
-        Add(now, x.size(), x.data());
+// Adds `count` items of `width` values: their moments are found apart and merged at the end, so that the state is
+// as before where Ctrl-C ended it.
+template <class State, class T, void (*Add)(sf_block_moments *, size_t, const T *),
+          void (*Merge)(State *, const sf_block_moments *)>
+void add_blocks(shared<State> &to, size_t count, size_t width, const T *x) {
+    sf_block_moments blocks;
+    sf_block_moments_begin(&blocks);
+    call_interruptibly([&](const sf_interrupt *interrupt, sf_error *error) {
+        return in_pieces(count, size_t(1) << 18, interrupt, error, [&](size_t first, size_t rows, sf_error *) {
+            Add(&blocks, rows, x + first * width);
+            return SF_STATUS_OK;
+        });
+    });
+    to.use([&](State *now, sf_error *) {
+        Merge(now, &blocks);
         return SF_STATUS_OK;
     });
 }
 
-template <class T, void (*Add)(sf_vector_moments *, size_t, const T *)>
-void add_rows(vector_moments &m, rows_of_three<T> x) {
-    m.use([&](sf_vector_moments *now, sf_error *) {
-        Add(now, x.shape(0), x.data());
-        return SF_STATUS_OK;
-    });
+template <class T, void (*Add)(sf_block_moments *, size_t, const T *)>
+void add(moments &m, flat_array<const T> x) {
+    add_blocks<sf_moments, T, Add, sf_moments_merge_blocks>(m, x.size(), 1, x.data());
+}
+
+template <class State, class T, void (*Add)(sf_block_moments *, size_t, const T *),
+          void (*Merge)(State *, const sf_block_moments *)>
+void add_rows(shared<State> &m, rows_of_three<T> x) {
+    add_blocks<State, T, Add, Merge>(m, x.shape(0), 3, x.data());
 }
 
 // Copies the other first, so that no two locks are held at once.
@@ -170,24 +184,10 @@ void bind_weighted(nb::module_ &m) {
 void bind_channels(nb::module_ &m) {
     using channels = sf_channel_moments;
     bind_zeroed<channels>(m, "ChannelMoments")
-        .def(
-            "add",
-            [](shared<channels> &self, rows_of_three<float> x) {
-                self.use([&](channels *now, sf_error *) {
-                    sf_channel_moments_add_f32(now, x.shape(0), x.data());
-                    return SF_STATUS_OK;
-                });
-            },
-            "x"_a.noconvert())
-        .def(
-            "add",
-            [](shared<channels> &self, rows_of_three<double> x) {
-                self.use([&](channels *now, sf_error *) {
-                    sf_channel_moments_add_f64(now, x.shape(0), x.data());
-                    return SF_STATUS_OK;
-                });
-            },
-            "x"_a.noconvert())
+        .def("add", &add_rows<channels, float, sf_block_moments_add_rows_f32, sf_channel_moments_merge_blocks>,
+             "x"_a.noconvert())
+        .def("add", &add_rows<channels, double, sf_block_moments_add_rows_f64, sf_channel_moments_merge_blocks>,
+             "x"_a.noconvert())
         .def("merge", &merge<channels, sf_channel_moments_merge>, "other"_a)
         .def(
             "at",
@@ -241,9 +241,9 @@ void bind_bounded(nb::module_ &m) {
         "betting_interval",
         [](flat_array<const double> x, double low, double high, double confidence) {
             std::pair<double, double> interval;
-            call([&](sf_error *error) {
+            call_interruptibly([&](const sf_interrupt *interrupt, sf_error *error) {
                 return sf_betting_interval_f64(x.size(), x.data(), low, high, confidence, &interval.first,
-                                               &interval.second, error);
+                                               &interval.second, interrupt, error);
             });
             return interval;
         },
@@ -261,8 +261,8 @@ void bind_estimate(nb::module_ &m) {
     bind_batches(m);
     bind_bounded(m);
     bind_kind<sf_moments>(m, "Moments")
-        .def("add", &add<float, sf_moments_add_f32>, "x"_a.noconvert())
-        .def("add", &add<double, sf_moments_add_f64>, "x"_a.noconvert())
+        .def("add", &add<float, sf_block_moments_add_f32>, "x"_a.noconvert())
+        .def("add", &add<double, sf_block_moments_add_f64>, "x"_a.noconvert())
         .def("merge", &merge<sf_moments, sf_moments_merge>, "other"_a)
         .def_prop_ro("mean", &value_of<sf_moments, sf_moments_mean>)
         .def_prop_ro("variance", &value_of<sf_moments, sf_moments_variance>)
@@ -295,8 +295,10 @@ void bind_estimate(nb::module_ &m) {
             "count"_a, "mean"_a, "m2"_a, "nonfinite"_a);
 
     bind_kind<sf_vector_moments>(m, "VectorMoments")
-        .def("add", &add_rows<float, sf_vector_moments_add_f32>, "x"_a.noconvert())
-        .def("add", &add_rows<double, sf_vector_moments_add_f64>, "x"_a.noconvert())
+        .def("add", &add_rows<sf_vector_moments, float, sf_block_moments_add_rows_f32, sf_vector_moments_merge_blocks>,
+             "x"_a.noconvert())
+        .def("add", &add_rows<sf_vector_moments, double, sf_block_moments_add_rows_f64, sf_vector_moments_merge_blocks>,
+             "x"_a.noconvert())
         .def("merge", &merge<sf_vector_moments, sf_vector_moments_merge>, "other"_a)
         .def_prop_ro("mean",
                      [](vector_moments &self) {

@@ -34,12 +34,14 @@ struct integrand {
         std::copy(answer.data(), answer.data() + count, values);
     }
 
-    // Ctrl-C stops and is spent: what is known so far is the answer to it.
-    int call_function(size_t count, uint32_t dims, const double *points, double *values) {
+    // Calls what may raise and tells C whether to stop. Ctrl-C stops and is spent: what is known so far is the
+    // answer to it.
+    template <class Function>
+    int stops(Function &&function) noexcept {
         if (interpreter_is_leaving()) return 1;
         nb::gil_scoped_acquire acquired;
         try {
-            evaluate(count, dims, points, values);
+            function();
             return 0;
         } catch (nb::python_error &error) {
             if (!error.matches(PyExc_KeyboardInterrupt)) failure = std::current_exception();
@@ -51,7 +53,14 @@ struct integrand {
 };
 
 int call_integrand(void *user, size_t count, uint32_t dims, const double *points, double *values) {
-    return static_cast<integrand *>(user)->call_function(count, dims, points, values);
+    integrand *self = static_cast<integrand *>(user);
+    return self->stops([&] { self->evaluate(count, dims, points, values); });
+}
+
+int ask(void *user) {
+    return static_cast<integrand *>(user)->stops([] {
+        if (PyErr_CheckSignals()) throw nb::python_error();
+    });
 }
 
 nb::typed<nb::dict, nb::str, nb::any> as_dict(const sf_integral &result) {
@@ -101,6 +110,8 @@ nb::typed<nb::list, nb::typed<nb::dict, nb::str, nb::any>> integrate(
         options.upper = upper.data();
     }
     integrand user{function, components, nullptr};
+    const sf_interrupt interrupt{ask, &user};
+    options.interrupt = &interrupt;
     std::vector<sf_integral> results(components);
     call([&](sf_error *refused) {
         return sf_integrate_vector(call_integrand, &user, &options, components, results.data(), refused);

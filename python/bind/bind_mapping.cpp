@@ -13,6 +13,8 @@
 
 namespace {
 
+constexpr size_t rows_of_a_piece = size_t(1) << 16;
+
 sf_mapping find(const std::string &name) {
     sf_mapping mapping;
     sf_error error;
@@ -70,7 +72,19 @@ void fill(const std::string &operation, const std::string &name, flat_array<cons
         strides[i] = kept[i].ndim() == (components > 1) ? 0 : components;
     }
     fill_function<T> function = function_of<T>(operation);
-    call([&](sf_error *error) { return function(mapping, count, input.data(), pointers, strides, out.data(), error); });
+    size_t out_width = operation == "sample"   ? sf_mapping_output_width(mapping)
+                       : operation == "invert" ? sf_mapping_input_width(mapping)
+                                               : 1;
+    auto work = [&](size_t first, size_t rows, sf_error *error) {
+        const T *parts[SF_MAPPING_MAX_PARAMETERS] = {};
+        for (size_t i = 0; i < SF_MAPPING_MAX_PARAMETERS; ++i)
+            parts[i] = pointers[i] ? pointers[i] + first * strides[i] : nullptr;
+        return function(mapping, rows, input.data() + first * width, parts, strides, out.data() + first * out_width,
+                        error);
+    };
+    call_interruptibly([&](const sf_interrupt *interrupt, sf_error *error) {
+        return in_checked_pieces(count, rows_of_a_piece, interrupt, error, work);
+    });
 }
 
 // A term of a GGX microsurface; v is None but for the third, alphas are one value or one for each point.
@@ -79,13 +93,17 @@ void fill_ggx(int term, flat_array<const T> w, std::optional<flat_array<const T>
               flat_array<const T> alpha_y, flat_array<T> out) {
     size_t strides[3] = {v && v->ndim() > 1 ? size_t(3) : 0, alpha_x.ndim() > 0, alpha_y.ndim() > 0};
     const T *second = v ? v->data() : nullptr;
-    call([&](sf_error *error) {
+    auto work = [&](size_t first, size_t rows, sf_error *error) {
+        const T *from = w.data() + 3 * first, *other = second ? second + strides[0] * first : nullptr;
+        const T *across = alpha_x.data() + strides[1] * first, *along = alpha_y.data() + strides[2] * first;
+        sf_ggx_term which = static_cast<sf_ggx_term>(term);
         if constexpr (std::is_same_v<T, float>)
-            return sf_ggx_fill_f32(static_cast<sf_ggx_term>(term), w.size() / 3, w.data(), second, alpha_x.data(),
-                                   alpha_y.data(), strides, out.data(), error);
+            return sf_ggx_fill_f32(which, rows, from, other, across, along, strides, out.data() + first, error);
         else
-            return sf_ggx_fill_f64(static_cast<sf_ggx_term>(term), w.size() / 3, w.data(), second, alpha_x.data(),
-                                   alpha_y.data(), strides, out.data(), error);
+            return sf_ggx_fill_f64(which, rows, from, other, across, along, strides, out.data() + first, error);
+    };
+    call_interruptibly([&](const sf_interrupt *interrupt, sf_error *error) {
+        return in_checked_pieces(w.size() / 3, rows_of_a_piece, interrupt, error, work);
     });
 }
 

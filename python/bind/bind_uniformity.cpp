@@ -39,8 +39,8 @@ void bind_uniformity(nb::module_ &m) {
             double value = 0.0;
             sf_discrepancy_kind found = find_kind(kind);
             uint32_t dims = dims_of(points);
-            call([&](sf_error *error) {
-                return sf_discrepancy(found, points.data(), points.shape(0), dims, threads, &value, error);
+            call_interruptibly([&](const sf_interrupt *interrupt, sf_error *error) {
+                return sf_discrepancy(found, points.data(), points.shape(0), dims, threads, &value, interrupt, error);
             });
             return value;
         },
@@ -51,9 +51,9 @@ void bind_uniformity(nb::module_ &m) {
         [](rows points, uint64_t boxes) {
             std::pair<double, double> bounds;
             uint32_t dims = dims_of(points);
-            call([&](sf_error *error) {
+            call_interruptibly([&](const sf_interrupt *interrupt, sf_error *error) {
                 return sf_star_discrepancy(points.data(), points.shape(0), dims, boxes, &bounds.first, &bounds.second,
-                                           error);
+                                           interrupt, error);
             });
             return bounds;
         },
@@ -63,8 +63,9 @@ void bind_uniformity(nb::module_ &m) {
         "t_value",
         [](rows points, uint32_t base, uint32_t effort, uint32_t threads) {
             uint32_t t = 0, dims = dims_of(points);
-            call([&](sf_error *error) {
-                return sf_net_t_value(points.data(), points.shape(0), dims, base, effort, threads, &t, error);
+            call_interruptibly([&](const sf_interrupt *interrupt, sf_error *error) {
+                return sf_net_t_value(points.data(), points.shape(0), dims, base, effort, threads, &t, interrupt,
+                                      error);
             });
             return t;
         },
@@ -75,8 +76,9 @@ void bind_uniformity(nb::module_ &m) {
         [](rows points, bool toroidal, uint32_t threads) {
             double distance = 0.0;
             uint32_t dims = dims_of(points);
-            call([&](sf_error *error) {
-                return sf_minimum_distance(points.data(), points.shape(0), dims, toroidal, threads, &distance, error);
+            call_interruptibly([&](const sf_interrupt *interrupt, sf_error *error) {
+                return sf_minimum_distance(points.data(), points.shape(0), dims, toroidal, threads, &distance,
+                                           interrupt, error);
             });
             return distance;
         },

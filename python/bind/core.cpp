@@ -11,6 +11,7 @@ nb::object exception_of(sf_status status) {
         case SF_STATUS_OUT_OF_MEMORY: return nb::borrow(PyExc_MemoryError);
         case SF_STATUS_IO: return nb::borrow(PyExc_OSError);
         case SF_STATUS_UNSUPPORTED: return nb::borrow(PyExc_NotImplementedError);
+        case SF_STATUS_INTERRUPTED: return nb::borrow(PyExc_KeyboardInterrupt);
         case SF_STATUS_OK:
         case SF_STATUS_BACKEND: break;
     }

@@ -76,7 +76,7 @@ static void test_entries_of_weight_0_are_never_drawn(void **state) {
     double w[1000];
     sf_alias_table *table;
     make_weights(2, 1000, w);
-    assert_int_equal(sf_alias_table_create(w, 1000, &table, NULL), SF_STATUS_OK);
+    assert_int_equal(sf_alias_table_create(w, 1000, &table, NULL, NULL), SF_STATUS_OK);
     assert_int_equal(sf_alias_table_count(table), 1000);
     for (uint32_t i = 0; i < 1 << 16; ++i) {
         float u = i == 0 ? SF_UNIT_MAX_F : (float)i * 0x1p-16f;
@@ -119,7 +119,7 @@ static void test_the_inverse_of_an_index_leads_back_to_it(void **state) {
     uint32_t index[1000], back[1000];
     sf_alias_table *table;
     make_weights(3, 1000, w);
-    sf_alias_table_create(w, 1000, &table, NULL);
+    sf_alias_table_create(w, 1000, &table, NULL, NULL);
     for (uint32_t i = 0; i < 1000; ++i) index[i] = i;
     for (int i = 0; i < 1000; ++i) total += w[i];
     assert_int_equal(sf_alias_table_invert_fill(table, 1000, index, u, NULL), SF_STATUS_OK);
@@ -140,13 +140,14 @@ static void test_bad_weights_are_refused_by_place_and_value(void **state) {
     sf_alias_table *table;
     sf_piecewise *piecewise;
     sf_error error;
-    expect_refused(sf_alias_table_create(negative, 3, &table, &error), &error, "weights[1] is -2; it must be finite");
-    expect_refused(sf_alias_table_create(nan, 3, &table, &error), &error, "weights[2] is nan");
-    expect_refused(sf_alias_table_create(none, 2, &table, &error), &error, "all 2 weights are 0");
+    expect_refused(sf_alias_table_create(negative, 3, &table, NULL, &error), &error,
+                   "weights[1] is -2; it must be finite");
+    expect_refused(sf_alias_table_create(nan, 3, &table, NULL, &error), &error, "weights[2] is nan");
+    expect_refused(sf_alias_table_create(none, 2, &table, NULL, &error), &error, "all 2 weights are 0");
     expect_refused(sf_alias_build(good, 0, NULL, NULL, &error), &error, "count is 0");
-    expect_refused(sf_piecewise_create_1d(negative, 3, &piecewise, &error), &error, "weights[1] is -2");
-    expect_refused(sf_piecewise_create_2d(none, 2, 1, &piecewise, &error), &error, "all 2 weights");
-    expect_refused(sf_piecewise_create_2d(good, 0, 2, &piecewise, &error), &error,
+    expect_refused(sf_piecewise_create_1d(negative, 3, &piecewise, NULL, &error), &error, "weights[1] is -2");
+    expect_refused(sf_piecewise_create_2d(none, 2, 1, &piecewise, NULL, &error), &error, "all 2 weights");
+    expect_refused(sf_piecewise_create_2d(good, 0, 2, &piecewise, NULL, &error), &error,
                    "0 x 2 cells; each must be 1 .. 2^24");
     assert_null(piecewise);
     sf_piecewise_destroy(NULL);
@@ -163,8 +164,8 @@ static void test_bad_points_are_refused_before_anything_is_written(void **state)
     sf_alias_table *table;
     sf_piecewise *line;
     sf_error error;
-    sf_alias_table_create(good, 2, &table, NULL);
-    sf_piecewise_create_1d(good, 2, &line, NULL);
+    sf_alias_table_create(good, 2, &table, NULL, NULL);
+    sf_piecewise_create_1d(good, 2, &line, NULL, NULL);
     expect_refused(sf_alias_table_sample_fill_f32(table, 3, u, index, &error), &error,
                    "value 1 of u is 1; it must be in [0,1)");
     expect_refused(sf_alias_table_sample_fill_f64(table, 2, wide, index, &error), &error, "nan");
@@ -193,7 +194,7 @@ static void test_a_line_gives_every_cell_its_share(void **state) {
             sf_piecewise *line;
             make_weights(kind, n, w);
             for (size_t i = 0; i < n; ++i) total += w[i];
-            assert_int_equal(sf_piecewise_create_1d(w, n, &line, NULL), SF_STATUS_OK);
+            assert_int_equal(sf_piecewise_create_1d(w, n, &line, NULL, NULL), SF_STATUS_OK);
             assert_int_equal(sf_piecewise_sample_fill_f64(line, POINTS, u, x, NULL), SF_STATUS_OK);
             assert_int_equal(sf_piecewise_pdf_fill_f64(line, POINTS, x, pdf, NULL), SF_STATUS_OK);
             for (size_t i = 0; i < POINTS; ++i) {
@@ -222,7 +223,7 @@ static void test_a_grid_comes_back_and_keeps_off_cells_of_weight_0(void **state)
     sf_piecewise *grid;
     make_weights(2, ROWS * COLUMNS, w);
     for (int c = 0; c < COLUMNS; ++c) w[3 * COLUMNS + c] = 0.0; /* a dark row */
-    assert_int_equal(sf_piecewise_create_2d(w, COLUMNS, ROWS, &grid, NULL), SF_STATUS_OK);
+    assert_int_equal(sf_piecewise_create_2d(w, COLUMNS, ROWS, &grid, NULL, NULL), SF_STATUS_OK);
     assert_int_equal(sf_piecewise_width(grid), 2);
     for (size_t i = 0; i < 2 * POINTS; ++i) {
         fu[i] = i < 4 ? (i < 2 ? 0.0f : SF_UNIT_MAX_F) : sf_float_from_bits((uint32_t)(sf_hash64(6, i) >> 32));
@@ -248,7 +249,7 @@ static void test_the_density_of_a_grid_has_mean_one(void **state) {
     double w[ROWS * COLUMNS], sum = 0.0;
     sf_piecewise *grid;
     make_weights(1, ROWS * COLUMNS, w);
-    sf_piecewise_create_2d(w, COLUMNS, ROWS, &grid, NULL);
+    sf_piecewise_create_2d(w, COLUMNS, ROWS, &grid, NULL, NULL);
     for (int i = 0; i < ROWS * COLUMNS; ++i) {
         double x[2] = {(i % COLUMNS + 0.5) / COLUMNS, (i / COLUMNS + 0.5) / ROWS}, pdf;
         sf_piecewise_pdf_fill_f64(grid, 1, x, &pdf, NULL);

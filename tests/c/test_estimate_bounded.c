@@ -195,7 +195,8 @@ static void test_bad_intervals_are_refused_by_name(void **state) {
     }
     const double x[] = {0.5, 1.5};
     double lower, upper;
-    assert_int_equal(sf_betting_interval_f64(2, x, 0.0, 1.0, 0.95, &lower, &upper, &error), SF_STATUS_INVALID_VALUE);
+    assert_int_equal(sf_betting_interval_f64(2, x, 0.0, 1.0, 0.95, &lower, &upper, NULL, &error),
+                     SF_STATUS_INVALID_VALUE);
     assert_non_null(strstr(error.message, "sample 1 is 1.5"));
 }
 
@@ -208,14 +209,14 @@ static void test_the_betting_interval_of_zeros_ends_where_the_capital_is_forty(v
      * sqrt(2 log(40) / (n variance)), at most 3/4 / (1 - m). The capital of one who bets that the
      * mean is below m is the product of 1 + bet m; it is 2 / alpha = 40 at the upper end. */
     double x[100] = {0}, lower, upper, capital = 1.0, square = 0.25;
-    assert_int_equal(sf_betting_interval_f64(100, x, 0.0, 1.0, 0.95, &lower, &upper, NULL), SF_STATUS_OK);
+    assert_int_equal(sf_betting_interval_f64(100, x, 0.0, 1.0, 0.95, &lower, &upper, NULL, NULL), SF_STATUS_OK);
     for (int t = 1; t <= 100; ++t) {
         capital *= 1.0 + fmin(sqrt(2.0 * log(40.0) * t / (100.0 * square)), 0.75 / (1.0 - upper)) * upper;
         square += 0.25 / ((t + 1.0) * (t + 1.0));
     }
     assert_true(lower == 0.0);
     expect_near(capital, 40.0, 1e-9);
-    assert_int_equal(sf_betting_interval_f64(0, x, 2.0, 3.0, 0.95, &lower, &upper, NULL), SF_STATUS_OK);
+    assert_int_equal(sf_betting_interval_f64(0, x, 2.0, 3.0, 0.95, &lower, &upper, NULL, NULL), SF_STATUS_OK);
     assert_true(lower == 2.0 && upper == 3.0);
 }
 
@@ -229,7 +230,7 @@ static void test_the_betting_interval_covers_and_is_narrower_than_bernsteins(voi
             sf_moments m = {0};
             double lower, upper;
             for (uint64_t i = 0; i < 300; ++i) x[i] = draw(kind, 300 * (400 * (uint64_t)kind + r) + i);
-            assert_int_equal(sf_betting_interval_f64(300, x, 0.0, 1.0, 0.9, &lower, &upper, NULL), SF_STATUS_OK);
+            assert_int_equal(sf_betting_interval_f64(300, x, 0.0, 1.0, 0.9, &lower, &upper, NULL, NULL), SF_STATUS_OK);
             sf_moments_add_f64(&m, 300, x);
             missed += lower > means[kind] || upper < means[kind];
             width += upper - lower;

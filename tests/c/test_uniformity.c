@@ -31,7 +31,7 @@ static void fill_pattern(double *x, sf_pattern pattern, sf_scramble scramble, si
 
 static double discrepancy_of(sf_discrepancy_kind kind, const double *x, size_t count, uint32_t dims) {
     double value = NAN;
-    assert_int_equal(sf_discrepancy(kind, x, count, dims, 1, &value, NULL), SF_STATUS_OK);
+    assert_int_equal(sf_discrepancy(kind, x, count, dims, 1, &value, NULL, NULL), SF_STATUS_OK);
     return value;
 }
 
@@ -137,7 +137,7 @@ static void test_star_discrepancy_is_its_definition_where_that_is_affordable(voi
             /* Every other time with ties. */
             for (size_t i = 0; seed & 1 && i < count * dims; ++i) x[i] = floor(4.0 * x[i]) / 4.0;
             double lower, upper;
-            assert_int_equal(sf_star_discrepancy(x, count, dims, 1, &lower, &upper, NULL), SF_STATUS_OK);
+            assert_int_equal(sf_star_discrepancy(x, count, dims, 1, &lower, &upper, NULL, NULL), SF_STATUS_OK);
             expect_near(lower, star_by_definition(x, count, dims), 1e-14);
             assert_true(lower == upper);
         }
@@ -148,7 +148,7 @@ static void test_star_discrepancy_meets_closed_forms(void **state) {
     double x[4096], lower, upper;
     /* Centres of a line: 1 / (2n). */
     for (int i = 0; i < 1000; ++i) x[i] = (i + 0.5) / 1000.0;
-    sf_star_discrepancy(x, 1000, 1, 1, &lower, &upper, NULL);
+    sf_star_discrepancy(x, 1000, 1, 1, &lower, &upper, NULL, NULL);
     expect_near(lower, 1.0 / 2000.0, 1e-15);
     /* Corners of a k x k grid: the open box just below (1, 1) misses nothing but k^2 - (k-1)^2 of
      * its share; the closed one up to (1 - 1/k, 1 - 1/k) holds all of them. */
@@ -156,7 +156,7 @@ static void test_star_discrepancy_meets_closed_forms(void **state) {
         x[2 * i] = i % 45 / 45.0;
         x[2 * i + 1] = i / 45 / 45.0;
     }
-    sf_star_discrepancy(x, 2025, 2, 1, &lower, &upper, NULL);
+    sf_star_discrepancy(x, 2025, 2, 1, &lower, &upper, NULL, NULL);
     expect_near(lower, 1.0 - 44.0 * 44.0 / 2025.0, 1e-15);
     assert_true(lower == upper);
 }
@@ -187,7 +187,7 @@ static void test_star_bounds_hold_the_star_discrepancy(void **state) {
     double last = 1.0;
     for (uint64_t boxes = 1; boxes <= 1 << 14; boxes *= 128) {
         double lower, upper;
-        assert_int_equal(sf_star_discrepancy(x, COUNT, 3, boxes, &lower, &upper, NULL), SF_STATUS_OK);
+        assert_int_equal(sf_star_discrepancy(x, COUNT, 3, boxes, &lower, &upper, NULL, NULL), SF_STATUS_OK);
         assert_true(lower <= star + 1e-14 && star <= upper + 1e-14);
         assert_true(upper - lower <= last);
         last = upper - lower;
@@ -199,10 +199,10 @@ static void test_star_bounds_of_many_dimensions_are_honest(void **state) {
     (void)state;
     static double x[16 * 100];
     double lower, upper;
-    assert_int_equal(sf_star_discrepancy(x, 16, 100, 1 << 16, &lower, &upper, NULL), SF_STATUS_OK);
+    assert_int_equal(sf_star_discrepancy(x, 16, 100, 1 << 16, &lower, &upper, NULL, NULL), SF_STATUS_OK);
     assert_true(lower == 1.0 && upper == 1.0); /* all points at the origin */
     fill_random(x, 16 * 100, 4);
-    assert_int_equal(sf_star_discrepancy(x, 16, 100, 1 << 16, &lower, &upper, NULL), SF_STATUS_OK);
+    assert_int_equal(sf_star_discrepancy(x, 16, 100, 1 << 16, &lower, &upper, NULL, NULL), SF_STATUS_OK);
     assert_true(lower > 0.0 && lower < upper && upper == 1.0);
 }
 
@@ -211,7 +211,7 @@ static void test_star_bounds_of_many_dimensions_are_honest(void **state) {
 static uint32_t t_of(const double *x, size_t count, uint32_t dims, uint32_t base) {
     uint32_t t = 99;
     sf_error error = {0};
-    if (sf_net_t_value(x, count, dims, base, 0, 1, &t, &error) != SF_STATUS_OK) fail_msg("%s", error.message);
+    if (sf_net_t_value(x, count, dims, base, 0, 1, &t, NULL, &error) != SF_STATUS_OK) fail_msg("%s", error.message);
     return t;
 }
 
@@ -321,7 +321,7 @@ static void test_t_value_stops_at_the_effort_given_and_says_how_far_it_got(void 
     sf_error error;
     fill_pattern(x, SF_PATTERN_SOBOL, SF_SCRAMBLE_NONE, 256, 400);
     /* Level 1: 400 shapes of 256 * 400 steps; level 2: 80,200 of them, 8.2e9 > 2^30. */
-    assert_int_equal(sf_net_t_value(x, 256, 400, 2, 1, 1, &t, &error), SF_STATUS_UNSUPPORTED);
+    assert_int_equal(sf_net_t_value(x, 256, 400, 2, 1, 1, &t, NULL, &error), SF_STATUS_UNSUPPORTED);
     assert_non_null(strstr(error.message, "t is at most 7"));
     assert_int_equal(t, 99);
 }
@@ -347,7 +347,7 @@ static void test_minimum_distance_is_that_of_all_pairs(void **state) {
                         }
                         least = fmin(least, square);
                     }
-                assert_int_equal(sf_minimum_distance(x, count, dims, toroidal, 2, &distance, NULL), SF_STATUS_OK);
+                assert_int_equal(sf_minimum_distance(x, count, dims, toroidal, 2, &distance, NULL, NULL), SF_STATUS_OK);
                 assert_true(distance == sqrt(least));
             }
 }
@@ -356,9 +356,9 @@ static void test_opposite_sides_touch_on_the_torus_only(void **state) {
     (void)state;
     static const double x[] = {0.5, 0.0, 0.5, 0.875};
     double distance;
-    sf_minimum_distance(x, 2, 2, 0, 1, &distance, NULL);
+    sf_minimum_distance(x, 2, 2, 0, 1, &distance, NULL, NULL);
     assert_true(distance == 0.875);
-    sf_minimum_distance(x, 2, 2, 1, 1, &distance, NULL);
+    sf_minimum_distance(x, 2, 2, 1, 1, &distance, NULL, NULL);
     assert_true(distance == 0.125);
 }
 
@@ -368,11 +368,11 @@ static void test_opposite_sides_touch_on_the_torus_only(void **state) {
 static void measure_all(const double *x, size_t count, uint32_t threads, double *values) {
     uint32_t t;
     for (int kind = 0; kind < SF_DISCREPANCY_KIND_COUNT; ++kind)
-        sf_discrepancy((sf_discrepancy_kind)kind, x, count, 3, threads, values++, NULL);
+        sf_discrepancy((sf_discrepancy_kind)kind, x, count, 3, threads, values++, NULL, NULL);
     for (int toroidal = 0; toroidal < 2; ++toroidal)
-        sf_minimum_distance(x, count, 3, toroidal, threads, values++, NULL);
-    sf_star_discrepancy(x, count, 3, 1000, values, values + 1, NULL);
-    sf_net_t_value(x, count, 3, 2, 0, threads, &t, NULL);
+        sf_minimum_distance(x, count, 3, toroidal, threads, values++, NULL, NULL);
+    sf_star_discrepancy(x, count, 3, 1000, values, values + 1, NULL, NULL);
+    sf_net_t_value(x, count, 3, 2, 0, threads, &t, NULL, NULL);
     values[2] = t;
 }
 
@@ -406,13 +406,15 @@ static void test_bad_points_are_named(void **state) {
     uint32_t t;
     sf_error e;
     const sf_status bad = SF_STATUS_INVALID_VALUE;
-    expect_refused(sf_discrepancy(SF_DISCREPANCY_CENTERED, x, 3, 2, 1, &value, &e), bad, &e, "coordinate 1 of point 2");
-    expect_refused(sf_star_discrepancy(x, 2, 2, 10, &value, &other, &e), bad, &e, "coordinate 1 of point 1 is 1");
-    expect_refused(sf_net_t_value(x, 2, 2, 2, 0, 1, &t, &e), bad, &e, "coordinate 1 of point 1 is 1");
-    expect_refused(sf_minimum_distance(x, 3, 2, 0, 1, &value, &e), bad, &e, "nan");
-    assert_int_equal(sf_discrepancy(SF_DISCREPANCY_CENTERED, x, 2, 2, 1, &value, &e), SF_STATUS_OK); /* 1 is in [0,1] */
+    expect_refused(sf_discrepancy(SF_DISCREPANCY_CENTERED, x, 3, 2, 1, &value, NULL, &e), bad, &e,
+                   "coordinate 1 of point 2");
+    expect_refused(sf_star_discrepancy(x, 2, 2, 10, &value, &other, NULL, &e), bad, &e, "coordinate 1 of point 1 is 1");
+    expect_refused(sf_net_t_value(x, 2, 2, 2, 0, 1, &t, NULL, &e), bad, &e, "coordinate 1 of point 1 is 1");
+    expect_refused(sf_minimum_distance(x, 3, 2, 0, 1, &value, NULL, &e), bad, &e, "nan");
+    assert_int_equal(sf_discrepancy(SF_DISCREPANCY_CENTERED, x, 2, 2, 1, &value, NULL, &e),
+                     SF_STATUS_OK); /* 1 is in [0,1] */
     x[0] = -0.001;
-    expect_refused(sf_discrepancy(SF_DISCREPANCY_CENTERED, x, 2, 2, 1, &value, &e), bad, &e, "-0.001");
+    expect_refused(sf_discrepancy(SF_DISCREPANCY_CENTERED, x, 2, 2, 1, &value, NULL, &e), bad, &e, "-0.001");
 }
 
 static void test_bad_options_are_named(void **state) {
@@ -424,15 +426,15 @@ static void test_bad_options_are_named(void **state) {
     sf_error e;
     const sf_status bad = SF_STATUS_INVALID_VALUE;
     expect_refused(sf_discrepancy_kind_find("centred", &kind, &e), bad, &e, "centered, wraparound, mixture, l2-star");
-    expect_refused(sf_discrepancy((sf_discrepancy_kind)9, x, 1, 1, 1, &value, &e), bad, &e, "9");
-    expect_refused(sf_discrepancy(SF_DISCREPANCY_CENTERED, x, 0, 1, 1, &value, &e), bad, &e, "0 points");
-    expect_refused(sf_discrepancy(SF_DISCREPANCY_CENTERED, x, 2, 25000, 1, &value, &e), bad, &e, "25000");
-    expect_refused(sf_discrepancy(SF_DISCREPANCY_L2_STAR, x, 2, 1000, 1, &value, &e), bad, &e, "1000");
-    expect_refused(sf_star_discrepancy(x, 2, 2, 0, &value, &other, &e), bad, &e, "boxes is 0");
-    expect_refused(sf_net_t_value(x, 2, 2, 1, 0, 1, &t, &e), bad, &e, "base is 1");
-    expect_refused(sf_net_t_value(x, 1000, 2, 2, 0, 1, &t, &e), bad, &e, "512 or 1024");
-    expect_refused(sf_net_t_value(x, 10, 2, 3, 0, 1, &t, &e), bad, &e, "9 or 27");
-    expect_refused(sf_minimum_distance(x, 1, 2, 0, 1, &value, &e), bad, &e, "needs 2");
+    expect_refused(sf_discrepancy((sf_discrepancy_kind)9, x, 1, 1, 1, &value, NULL, &e), bad, &e, "9");
+    expect_refused(sf_discrepancy(SF_DISCREPANCY_CENTERED, x, 0, 1, 1, &value, NULL, &e), bad, &e, "0 points");
+    expect_refused(sf_discrepancy(SF_DISCREPANCY_CENTERED, x, 2, 25000, 1, &value, NULL, &e), bad, &e, "25000");
+    expect_refused(sf_discrepancy(SF_DISCREPANCY_L2_STAR, x, 2, 1000, 1, &value, NULL, &e), bad, &e, "1000");
+    expect_refused(sf_star_discrepancy(x, 2, 2, 0, &value, &other, NULL, &e), bad, &e, "boxes is 0");
+    expect_refused(sf_net_t_value(x, 2, 2, 1, 0, 1, &t, NULL, &e), bad, &e, "base is 1");
+    expect_refused(sf_net_t_value(x, 1000, 2, 2, 0, 1, &t, NULL, &e), bad, &e, "512 or 1024");
+    expect_refused(sf_net_t_value(x, 10, 2, 3, 0, 1, &t, NULL, &e), bad, &e, "9 or 27");
+    expect_refused(sf_minimum_distance(x, 1, 2, 0, 1, &value, NULL, &e), bad, &e, "needs 2");
 }
 
 int main(void) {

@@ -46,7 +46,8 @@ typedef enum sf_status {
     SF_STATUS_OUT_OF_MEMORY,
     SF_STATUS_IO,          /* a file could not be read or written */
     SF_STATUS_UNSUPPORTED, /* a method that lacks this operation, or a component not built in */
-    SF_STATUS_BACKEND      /* Embree or OpenImageIO reported an error of its own */
+    SF_STATUS_BACKEND,     /* Embree or OpenImageIO reported an error of its own */
+    SF_STATUS_INTERRUPTED  /* the caller's sf_interrupt said stop */
 } sf_status;
 
 #define SF_ERROR_MESSAGE_SIZE 512
@@ -60,6 +61,24 @@ typedef struct sf_error {
 
 /* "ok", "invalid value", … ; never NULL. */
 SF_API const char *sf_status_name(sf_status status);
+
+/* How a caller stops work that may run long. What takes one calls `asked` with `user`, about forty times a
+ * second, always on the thread that called it, and ends with SF_STATUS_INTERRUPTED some milliseconds after it
+ * returned anything but 0. NULL in its place: the work is never stopped. Work of less than 25 ms does not ask. */
+typedef struct sf_interrupt {
+    int (*asked)(void *user);
+    void *user;
+} sf_interrupt;
+
+/* A piece of some work: items first .. first + count - 1. */
+typedef sf_status (*sf_piece_fn)(void *user, size_t first, size_t count, sf_error *error);
+
+/* Calls `work` with `user` for pieces of items 0 .. total - 1 in order, on the calling thread, until one fails,
+ * whose status it returns, or `interrupt` says stop. Each piece but the last is a multiple of `smallest`, at least 1,
+ * and they grow until each takes some 8 to 24 ms, so that neither short work nor long pays for the asking. Without
+ * an interrupt, or where total <= smallest, there is one piece, even of no items. Thread-safe. */
+SF_API sf_status sf_work_in_pieces(size_t total, size_t smallest, sf_piece_fn work, void *user,
+                                   const sf_interrupt *interrupt, sf_error *error);
 
 /* Whether `name` is the one `known`, capital letters of ASCII being as small ones, "-" and " " as "_"; 0 where one
  * is NULL. Every look-up by name in the library compares so. */

@@ -48,8 +48,10 @@ static inline uint32_t sf_alias_pick(const float *keep, const uint32_t *alias, u
 
 typedef struct sf_alias_table sf_alias_table;
 
-/* Copies what it needs of the weights: 16 bytes an entry. */
-SF_API sf_status sf_alias_table_create(const double *weights, size_t count, sf_alias_table **table, sf_error *error);
+/* Copies what it needs of the weights: 16 bytes an entry. There is no table where `interrupt` (NULL: none) says stop.
+ */
+SF_API sf_status sf_alias_table_create(const double *weights, size_t count, sf_alias_table **table,
+                                       const sf_interrupt *interrupt, sf_error *error);
 SF_API void sf_alias_table_destroy(sf_alias_table *table);
 SF_API size_t sf_alias_table_count(const sf_alias_table *table);
 
@@ -73,10 +75,11 @@ typedef struct sf_piecewise sf_piecewise;
 
 /* On the unit interval: `count` cells of equal width, 1 .. 2^24. On the unit square: rows of
  * `columns` cells, row 0 at y = 0, each 1 .. 2^24. They keep 12 bytes a cell. A cell of less than
- * 2^-53 of its row's weight has density 0. */
-SF_API sf_status sf_piecewise_create_1d(const double *weights, size_t count, sf_piecewise **piecewise, sf_error *error);
+ * 2^-53 of its row's weight has density 0. There is no density where `interrupt` (NULL: none) says stop. */
+SF_API sf_status sf_piecewise_create_1d(const double *weights, size_t count, sf_piecewise **piecewise,
+                                        const sf_interrupt *interrupt, sf_error *error);
 SF_API sf_status sf_piecewise_create_2d(const double *weights, size_t columns, size_t rows, sf_piecewise **piecewise,
-                                        sf_error *error);
+                                        const sf_interrupt *interrupt, sf_error *error);
 SF_API void sf_piecewise_destroy(sf_piecewise *piecewise);
 
 /* Values in a point of it: 1 or 2. */

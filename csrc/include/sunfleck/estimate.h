@@ -180,6 +180,26 @@ static inline sf_moments sf_channel_moments_at(const sf_channel_moments *m, int 
 SF_API void sf_channel_moments_add_f32(sf_channel_moments *m, size_t count, const float *x);
 SF_API void sf_channel_moments_add_f64(sf_channel_moments *m, size_t count, const double *x);
 
+/* ---- arrays in pieces ---- */
+
+/* The moments of an array that comes in pieces: the same bits as one call of sf_moments_add_f32 (of rows of three
+ * sf_vector_moments_add_f32, sf_channel_moments_add_f32) for the whole array, if every piece but the last is a
+ * multiple of 256 long. Begin, add the pieces in order, of values or of rows and not both, and merge into moments. */
+#define SF_BLOCK_MOMENTS_LEVELS 64
+typedef struct sf_block_moments {
+    uint64_t blocks;
+    sf_channel_moments levels[SF_BLOCK_MOMENTS_LEVELS]; /* level k: of 2^k blocks, where bit k of `blocks` is set */
+} sf_block_moments;
+
+SF_API void sf_block_moments_begin(sf_block_moments *m);
+SF_API void sf_block_moments_add_f32(sf_block_moments *m, size_t count, const float *x);
+SF_API void sf_block_moments_add_f64(sf_block_moments *m, size_t count, const double *x);
+SF_API void sf_block_moments_add_rows_f32(sf_block_moments *m, size_t count, const float *x);
+SF_API void sf_block_moments_add_rows_f64(sf_block_moments *m, size_t count, const double *x);
+SF_API void sf_moments_merge_blocks(sf_moments *m, const sf_block_moments *blocks);
+SF_API void sf_vector_moments_merge_blocks(sf_vector_moments *m, const sf_block_moments *blocks);
+SF_API void sf_channel_moments_merge_blocks(sf_channel_moments *m, const sf_block_moments *blocks);
+
 /* ---- weighted moments (West 1979) ---- */
 
 /* The weighted mean sum(w x) / sum(w), weights finite and >= 0; of weight 0 only the count is
@@ -387,9 +407,10 @@ SF_API double sf_confidence_sequence_upper(const sf_confidence_sequence *c);
  * all where samples are few or skewed. Needs all samples at hand, and some 100 passes over them.
  * Where the samples contradict every mean (no likelier than an error), lower is above upper.
  *
- * Refuses a sample outside [low, high], or not finite; allocates 2 count doubles while it runs. */
+ * Refuses a sample outside [low, high], or not finite; allocates 2 count doubles while it runs. Where `interrupt`
+ * (NULL: none) says stop, lower and upper are not written. */
 SF_API sf_status sf_betting_interval_f64(size_t count, const double *x, double low, double high, double confidence,
-                                         double *lower, double *upper, sf_error *error);
+                                         double *lower, double *upper, const sf_interrupt *interrupt, sf_error *error);
 
 #include "sunfleck/exact_end.h"
 

@@ -59,27 +59,30 @@ SF_API const char *sf_integral_stop_name(sf_integral_stop stop);
 #define SF_INTEGRATE_MAX_LOOKS 128
 
 typedef struct sf_integrate_options {
-    sf_pattern pattern;   /* default sobol */
-    sf_scramble scramble; /* default SF_SCRAMBLE_DEFAULT. Where the seed does not move every
-                             coordinate of the points, each replicate is shifted at random, modulo 1
-                             (Cranley & Patterson 1976) */
-    uint32_t dims;        /* default 2 */
-    uint64_t seed;        /* default 0: same seed, same options and function, same result */
-    double absolute;      /* tolerance: max(absolute, relative * |value|); each finite and >= 0, not */
-    double relative;      /* both 0. Default 1e-3 absolute */
-    double confidence;    /* in (0,1), default 0.95 */
-    uint64_t min_samples; /* before the first look, shared by the replicates and rounded up to what
-                             they can take; at least 2, default 1024 */
-    uint64_t max_samples; /* in all, default 2^24 */
-    uint32_t replicates;  /* 2 .. SF_INTEGRATE_MAX_REPLICATES, default 16; of random, streams */
-    double low, high;     /* where the function's values are known to lie, low < high: a value
-                             outside is refused, and with the pattern random the interval is then a
-                             confidence sequence, which holds at every count and not only in the
-                             limit. Default: infinite, unknown */
-    uint32_t threads;     /* that make the points: 1 (default) ..; 0: one for each processor. Changes no bit */
-    const double *lower;  /* `dims` ends of the region each, lower below upper, -infinity and infinity */
-    const double *upper;  /* allowed; read during the call. Default NULL, both: the unit cube. A range
-                             of values needs finite bounds; it is the function's, before the volume */
+    sf_pattern pattern;            /* default sobol */
+    sf_scramble scramble;          /* default SF_SCRAMBLE_DEFAULT. Where the seed does not move every
+                                      coordinate of the points, each replicate is shifted at random, modulo 1
+                                      (Cranley & Patterson 1976) */
+    uint32_t dims;                 /* default 2 */
+    uint64_t seed;                 /* default 0: same seed, same options and function, same result */
+    double absolute;               /* tolerance: max(absolute, relative * |value|); each finite and >= 0, not */
+    double relative;               /* both 0. Default 1e-3 absolute */
+    double confidence;             /* in (0,1), default 0.95 */
+    uint64_t min_samples;          /* before the first look, shared by the replicates and rounded up to what
+                                      they can take; at least 2, default 1024 */
+    uint64_t max_samples;          /* in all, default 2^24 */
+    uint32_t replicates;           /* 2 .. SF_INTEGRATE_MAX_REPLICATES, default 16; of random, streams */
+    double low, high;              /* where the function's values are known to lie, low < high: a value
+                                      outside is refused, and with the pattern random the interval is then a
+                                      confidence sequence, which holds at every count and not only in the
+                                      limit. Default: infinite, unknown */
+    uint32_t threads;              /* that make the points: 1 (default) ..; 0: one for each processor. Changes no bit */
+    const double *lower;           /* `dims` ends of the region each, lower below upper, -infinity and infinity */
+    const double *upper;           /* allowed; read during the call. Default NULL, both: the unit cube. A range
+                                      of values needs finite bounds; it is the function's, before the volume */
+    const sf_interrupt *interrupt; /* default NULL: none. Asked while the points' tables are made, which
+                                      takes seconds for many replicates of many dimensions; where it says
+                                      stop, as where the function does, the integration ends interrupted */
 } sf_integrate_options;
 
 SF_API sf_integrate_options sf_integrate_options_default(void);

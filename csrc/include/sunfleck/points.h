@@ -171,6 +171,27 @@ SF_API sf_status sf_point_set_fill_f64(const sf_point_set *set, uint64_t first, 
 SF_API sf_status sf_point_set_fill_u32(const sf_point_set *set, uint64_t first, size_t count, uint32_t *out,
                                        sf_error *error);
 
+/* Fills one after another, with what is worth keeping between them: threads that sleep meanwhile (a team, made
+ * when a fill first asks for more than one), and the tables of the last pattern, which for a few dimensions cost
+ * as much as 2^16 values; those of more than 256 dimensions, or of a pattern that needs its total, are not kept.
+ * Thread-safe: fills may run at once, and one that finds the team at work starts threads of its own, one that
+ * finds the tables taken makes its own. Safe across fork where the parent was in no call of create or
+ * destroy: the child makes a team anew, and what the parent's took stays allocated. Destroy it when no fill uses it;
+ * NULL is legal. */
+typedef struct sf_point_filler sf_point_filler;
+
+SF_API sf_status sf_point_filler_create(sf_point_filler **filler, sf_error *error);
+SF_API void sf_point_filler_destroy(sf_point_filler *filler);
+
+/* As sf_points_fill_… of the same options, bit for bit, with options->threads threads of the filler's team, or of
+ * options->team where that is given. Where `interrupt` says stop, some of `out` has been written. */
+SF_API sf_status sf_point_filler_fill_f32(sf_point_filler *filler, const sf_points_options *options, size_t count,
+                                          float *out, const sf_interrupt *interrupt, sf_error *error);
+SF_API sf_status sf_point_filler_fill_f64(sf_point_filler *filler, const sf_points_options *options, size_t count,
+                                          double *out, const sf_interrupt *interrupt, sf_error *error);
+SF_API sf_status sf_point_filler_fill_u32(sf_point_filler *filler, const sf_points_options *options, size_t count,
+                                          uint32_t *out, const sf_interrupt *interrupt, sf_error *error);
+
 /* ---- one coordinate at a time ----
  *
  * Each equals the fill with the default scramble and the same seed. The preconditions are

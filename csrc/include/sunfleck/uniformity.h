@@ -6,7 +6,8 @@
  * Points are `count` rows of `dims` doubles, count >= 1, dims >= 1, packed. Every function is
  * thread-safe, uses up to `threads` threads (0: one for each processor), and gives the same bits
  * for any number of them and on every instruction set. A coordinate outside the interval
- * that a function states, NaN included, is refused with its place.
+ * that a function states, NaN included, is refused with its place. Where `interrupt` (NULL: none) says
+ * stop, nothing is written but the error.
  */
 #ifndef SUNFLECK_UNIFORMITY_H
 #define SUNFLECK_UNIFORMITY_H
@@ -44,7 +45,7 @@ SF_API sf_status sf_discrepancy_kind_find(const char *name, sf_discrepancy_kind 
  * (4/3)^dims (wraparound), (19/12)^dims (mixture), 3^-dims (l2-star), each known to some 1e-15 of
  * itself. Refuses dims for which those are beyond a double. */
 SF_API sf_status sf_discrepancy(sf_discrepancy_kind kind, const double *points, size_t count, uint32_t dims,
-                                uint32_t threads, double *value, sf_error *error);
+                                uint32_t threads, double *value, const sf_interrupt *interrupt, sf_error *error);
 
 /* Bounds of the star discrepancy, the greatest difference between the share of points in a box
  * [0,y) and its volume, of points in [0,1)^dims: lower <= D* <= upper.
@@ -56,7 +57,7 @@ SF_API sf_status sf_discrepancy(sf_discrepancy_kind kind, const double *points, 
  * bounds for the star discrepancy"), in boxes * count * dims steps at most. Beyond 32 dimensions
  * the cover is one box: `upper` is 1. One thread. */
 SF_API sf_status sf_star_discrepancy(const double *points, size_t count, uint32_t dims, uint64_t boxes, double *lower,
-                                     double *upper, sf_error *error);
+                                     double *upper, const sf_interrupt *interrupt, sf_error *error);
 
 /* The t of the points as a (t,m,dims)-net in `base` (2 .. 65536), count = base^m in [0,1)^dims:
  * the least for which every elementary interval of volume base^(t-m) holds base^t points.
@@ -69,13 +70,13 @@ SF_API sf_status sf_star_discrepancy(const double *points, size_t count, uint32_
  * Coordinates are taken as they are where the base is a power of 2; in other bases, whose borders
  * no double holds, one less than 2^-50 below a border counts as on it. */
 SF_API sf_status sf_net_t_value(const double *points, size_t count, uint32_t dims, uint32_t base, uint32_t effort,
-                                uint32_t threads, uint32_t *t, sf_error *error);
+                                uint32_t threads, uint32_t *t, const sf_interrupt *interrupt, sf_error *error);
 
 /* The least distance of two points in [0,1]^dims, count >= 2; on the torus where `toroidal` is not
  * 0, where opposite sides are the same. Cost: a sweep along the first coordinate, count^2 dims / 2
  * steps at most, far fewer in low dimensions. */
 SF_API sf_status sf_minimum_distance(const double *points, size_t count, uint32_t dims, int toroidal, uint32_t threads,
-                                     double *distance, sf_error *error);
+                                     double *distance, const sf_interrupt *interrupt, sf_error *error);
 
 #ifdef __cplusplus
 }
