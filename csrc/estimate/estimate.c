@@ -11,6 +11,7 @@
 
 #define BLOCK 256
 #define LANES 8
+#define SMALL_UNIT 0x1p-540 /* where sums overflow: a block's squares of the largest double fit */
 
 /* The finite rows of a block, column by column. */
 typedef struct block {
@@ -56,18 +57,26 @@ static double sum_shifted(const double *x, size_t n, double shift, int power) {
 }
 
 /* Mean and sum of squares of one column by two passes, corrected for the rounding of the mean
- * (Chan, Golub & LeVeque 1983, eq. 1.7). */
-static void column_moments(const double *x, size_t n, double *mean, double *m2) {
-    if (n == 0) {
-        *mean = *m2 = 0.0;
-        return;
-    }
+ * (Chan, Golub & LeVeque 1983, eq. 1.7). Either is not finite where a sum overflows. */
+static void two_passes(const double *x, size_t n, double *mean, double *m2) {
     double centre = sum_shifted(x, n, 0.0, 1) / (double)n;
-    /* A sum beyond the largest double: halve by the first value instead. */
-    if (!(fabs(centre) <= DBL_MAX)) centre = x[0];
     double rest = sum_shifted(x, n, centre, 1), square = sum_shifted(x, n, centre, 2) - rest * (rest / (double)n);
     *mean = centre + rest / (double)n;
-    *m2 = square > 0.0 ? square : 0.0;
+    *m2 = square < 0.0 ? 0.0 : square;
+}
+
+/* The same, again in a smaller unit where a sum overflows. The mean lies among the samples; the sum
+ * of squares becomes infinite if no double holds it. */
+static void column_moments(const double *x, size_t n, double *mean, double *m2) {
+    *mean = *m2 = 0.0;
+    if (n == 0) return;
+    two_passes(x, n, mean, m2);
+    if (fabs(*mean) <= DBL_MAX && *m2 <= DBL_MAX) return;
+    double small[BLOCK];
+    for (size_t i = 0; i < n; ++i) small[i] = x[i] * SMALL_UNIT;
+    two_passes(small, n, mean, m2);
+    *mean = fmax(-DBL_MAX, fmin(*mean / SMALL_UNIT, DBL_MAX));
+    *m2 = *m2 / SMALL_UNIT / SMALL_UNIT;
 }
 
 /* levels[k] holds 2^k blocks until its twin arrives. */

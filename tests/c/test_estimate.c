@@ -266,6 +266,98 @@ static void test_too_few_samples_claim_nothing(void **state) {
 }
 
 /* From 40-digit arithmetic; the classical ones agree with published tables. */
+/* ---- values near the largest double ---- */
+
+static void expect_huge(const sf_moments *m, uint64_t count, double mean) {
+    assert_true(m->count == count);
+    expect_near(m->mean, mean, 1e-14);
+    assert_true(m->m2 == (double)INFINITY); /* never NaN, never 0: nothing is claimed */
+    assert_true(sf_moments_standard_error(m) == (double)INFINITY);
+    assert_true(sf_moments_half_width(m, 0.95) == (double)INFINITY);
+}
+
+static void test_finite_samples_have_a_finite_mean_in_any_order(void **state) {
+    (void)state;
+    const double orders[][4] = {{1.7e308, -1.7e308, 1.7e308, 1.7e308},
+                                {-1.7e308, 1.7e308, 1.7e308, 1.7e308},
+                                {1.7e308, 1.7e308, 1.7e308, -1.7e308}};
+    for (int k = 0; k < 3; ++k) {
+        const double *x = orders[k];
+        sf_moments one = {0}, array = {0}, left = {0}, right = {0};
+        for (int i = 0; i < 4; ++i) sf_moments_add(&one, x[i]);
+        sf_moments_add_f64(&array, 4, x);
+        sf_moments_add_f64(&left, 1, x);
+        for (int i = 1; i < 4; ++i) sf_moments_add(&right, x[i]);
+        sf_moments_merge(&left, &right);
+        expect_huge(&one, 4, 0.85e308);
+        expect_huge(&array, 4, 0.85e308);
+        expect_huge(&left, 4, 0.85e308);
+    }
+    /* Deviations whose squares overflow, though neither sums nor differences do. */
+    double rows[2000];
+    sf_moments m = {0};
+    for (int i = 0; i < 2000; ++i) rows[i] = i % 2 ? 3e200 : 1e200;
+    sf_moments_add_f64(&m, 2000, rows);
+    expect_huge(&m, 2000, 2e200);
+}
+
+static void test_equal_samples_of_any_size_have_no_variance(void **state) {
+    (void)state;
+    const double values[] = {1.7976931348623157e308, -1.7e308, 1e200};
+    for (int k = 0; k < 3; ++k) {
+        double x[771];
+        sf_moments m = {0};
+        for (int i = 0; i < 771; ++i) x[i] = values[k];
+        for (int i = 0; i < 5; ++i) sf_moments_add(&m, x[i]);
+        sf_moments_add_f64(&m, 771, x);
+        assert_true(m.mean == values[k] && m.m2 == 0.0);
+    }
+}
+
+static void test_vectors_and_channels_take_values_near_the_largest_double(void **state) {
+    (void)state;
+    const double x[] = {1.7e308, 1.0, 1e200, -1.7e308, 3.0, 1e200};
+    sf_vector_moments vectors[3] = {{0}};
+    sf_channel_moments channels[3] = {{0}};
+    sf_vector_moments_add_f64(&vectors[0], 2, x);
+    sf_channel_moments_add_f64(&channels[0], 2, x);
+    for (int i = 0; i < 2; ++i) {
+        sf_vector_moments twin = {0};
+        sf_channel_moments channel = {0};
+        sf_vector_moments_add(&vectors[1], x + 3 * i);
+        sf_channel_moments_add(&channels[1], x + 3 * i);
+        sf_vector_moments_add(&twin, x + 3 * i);
+        sf_channel_moments_add(&channel, x + 3 * i);
+        sf_vector_moments_merge(&vectors[2], &twin);
+        sf_channel_moments_merge(&channels[2], &channel);
+    }
+    for (int i = 0; i < 3; ++i) {
+        const double *mean = vectors[i].mean, *each = channels[i].mean, *m2 = channels[i].m2;
+        assert_true(mean[0] == 0.0 && mean[1] == 2.0 && mean[2] == 1e200 && vectors[i].m2 == (double)INFINITY);
+        assert_true(each[0] == 0.0 && each[1] == 2.0 && each[2] == 1e200);
+        assert_true(m2[0] == (double)INFINITY && m2[1] == 2.0 && m2[2] == 0.0);
+    }
+}
+
+static void test_weighted_samples_near_the_largest_double(void **state) {
+    (void)state;
+    sf_weighted_moments m = {0}, other = {0}, light = {0}, heavy = {0};
+    sf_weighted_moments_add(&m, 1.7e308, 1.0);
+    sf_weighted_moments_add(&other, -1.7e308, 3.0);
+    sf_weighted_moments_merge(&m, &other);
+    expect_near(m.mean, -0.85e308, 1e-14);
+    assert_true(m.m2 == (double)INFINITY);
+    /* Small weights: sum of w (x - mean)^2 = 1e-300 / 2 4e400 is a double, its factors' product is not. */
+    sf_weighted_moments_add(&light, 1e200, 1e-300);
+    sf_weighted_moments_add(&light, 3e200, 1e-300);
+    expect_near(light.mean, 2e200, 1e-14);
+    expect_near(light.m2, 2e100, 1e-13);
+    /* The weights' sum overflows: no mean, rather than that of the first sample. */
+    sf_weighted_moments_add(&heavy, 1.0, 1.7e308);
+    sf_weighted_moments_add(&heavy, 3.0, 1.7e308);
+    assert_true(isnan(heavy.mean) && isnan(sf_weighted_moments_variance(&heavy)));
+}
+
 static void test_normal_quantile_meets_known_values(void **state) {
     (void)state;
     const double known[][2] = {{0.975, 1.95996398454005386},       {0.995, 2.57582930354890045},
@@ -326,6 +418,10 @@ int main(void) {
         cmocka_unit_test(test_whole_weights_stand_for_repeated_samples),
         cmocka_unit_test(test_equal_weights_give_the_standard_error_of_plain_moments),
         cmocka_unit_test(test_too_few_samples_claim_nothing),
+        cmocka_unit_test(test_finite_samples_have_a_finite_mean_in_any_order),
+        cmocka_unit_test(test_equal_samples_of_any_size_have_no_variance),
+        cmocka_unit_test(test_vectors_and_channels_take_values_near_the_largest_double),
+        cmocka_unit_test(test_weighted_samples_near_the_largest_double),
         cmocka_unit_test(test_normal_quantile_meets_known_values),
         cmocka_unit_test(test_student_quantile_meets_closed_forms_and_tables),
         cmocka_unit_test(test_half_width_covers_the_mean_as_often_as_it_says),

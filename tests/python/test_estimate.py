@@ -80,6 +80,28 @@ def test_half_width_is_students(n: int, confidence: float) -> None:
     assert moments_of(x).half_width(confidence) == pytest.approx(expected, rel=1e-9)
 
 
+@pytest.mark.parametrize("scale", [1e155, 1e200, 1e307, 1.7e308])
+def test_huge_samples_have_their_mean_and_claim_no_error(scale: float) -> None:
+    u = 2 * sf.Rng("pcg32", seed=8).random(3000) - 1
+    pieces = [moments_of(part * scale) for part in np.split(u, 5)]
+    for m in (moments_of(u * scale), pieces[0]):
+        for other in pieces[1:] if m is pieces[0] else ():
+            m.merge(other)
+        assert m.count == 3000
+        # The sum cancels: 3000 terms below 1, each rounded by 2^-53, and as many roundings of the mean.
+        assert m.mean / scale == pytest.approx(u.mean(), abs=1e-14)
+        assert (m.variance, m.sample_deviation, m.standard_error, m.half_width()) == (np.inf,) * 4
+    rows = (u * scale).reshape(-1, 3)
+    vectors, channels, batches = sf.VectorMoments(), sf.ChannelMoments(), sf.BatchMeans(10)
+    vectors.add(rows)
+    channels.add(rows)
+    batches.add(u * scale)
+    for mean in (vectors.mean, channels.mean):
+        assert np.array(mean) / scale == pytest.approx(u.reshape(-1, 3).mean(axis=0), abs=1e-14)
+    assert (vectors.variance, channels.variance) == (np.inf, (np.inf,) * 3)
+    assert batches.means.mean / scale == pytest.approx(u.mean(), abs=1e-14)
+
+
 @pytest.mark.parametrize("kind", [sf.Moments, sf.VectorMoments])
 def test_pickle_and_copy_go_on_where_they_were(kind: Any) -> None:
     m = kind()

@@ -19,6 +19,11 @@
  * one component that is not finite is left out whole. With no sample, mean and variance are NaN;
  * with fewer than two, sample deviation and standard error are infinity: nothing is known.
  *
+ * The mean of finite samples is finite, whatever they are. A sum of squared deviations above
+ * 1.797e308, the largest double (two samples 1.9e154 apart have it), is kept as infinity, and with it
+ * the variance, the standard error and every half-width: such moments claim nothing. Give samples so
+ * large, and samples whose squared deviations fall below 5e-324, in another unit.
+ *
  * All states are plain structs, zeroed to begin ({0}), copied by assignment. Every function is
  * safe on distinct objects. Bulk calls give the same bits on every instruction set.
  */
@@ -35,6 +40,25 @@ extern "C" {
 
 #include "sunfleck/exact_begin.h"
 
+/* ---- steps near the largest double ---- */
+
+/* A mean moved by `share` of its way to x. Their difference is infinite where the two have different
+ * signs and lie near the largest double: the parts of the weighted sum are not. */
+static inline double sf_mean_moved(double mean, double x, double difference, double share) {
+    return isfinite(difference) ? mean + difference * share : (mean - mean * share) + x * share;
+}
+
+/* The same by the n-th part. */
+static inline double sf_mean_divided(double mean, double x, double difference, double n) {
+    return isfinite(difference) ? mean + difference / n : (mean - mean / n) + x / n;
+}
+
+/* difference^2 weight, where the square alone may overflow though the weight is small, or 0. */
+static inline double sf_square_weighted(double difference, double weight) {
+    double square = difference * difference * weight;
+    return isfinite(square) ? square : difference * (difference * weight);
+}
+
 /* ---- scalar moments (Welford) ---- */
 
 typedef struct sf_moments {
@@ -49,8 +73,8 @@ static inline void sf_moments_add(sf_moments *m, double x) {
         ++m->nonfinite;
         return;
     }
-    double deviation = x - m->mean;
-    m->mean += deviation / (double)++m->count;
+    double n = (double)++m->count, deviation = x - m->mean;
+    m->mean = sf_mean_divided(m->mean, x, deviation, n);
     m->m2 += deviation * (x - m->mean);
 }
 
@@ -62,8 +86,8 @@ static inline void sf_moments_merge(sf_moments *m, const sf_moments *other) {
     double a = (double)m->count, b = (double)other->count, share = b / (a + b);
     double difference = other->mean - m->mean;
     m->count += other->count;
-    m->mean += difference * share;
-    m->m2 += other->m2 + difference * difference * (a * share);
+    m->mean = sf_mean_moved(m->mean, other->mean, difference, share);
+    m->m2 += other->m2 + sf_square_weighted(difference, a * share);
 }
 
 static inline double sf_moments_mean(const sf_moments *m) { return m->count ? m->mean : (double)NAN; }
@@ -100,7 +124,7 @@ static inline void sf_vector_moments_add(sf_vector_moments *m, const double x[3]
     double n = (double)++m->count;
     for (int k = 0; k < 3; ++k) {
         double deviation = x[k] - m->mean[k];
-        m->mean[k] += deviation / n;
+        m->mean[k] = sf_mean_divided(m->mean[k], x[k], deviation, n);
         m->m2 += deviation * (x[k] - m->mean[k]);
     }
 }
@@ -112,10 +136,11 @@ static inline void sf_vector_moments_merge(sf_vector_moments *m, const sf_vector
     m->count += other->count;
     for (int k = 0; k < 3; ++k) {
         double difference = other->mean[k] - m->mean[k];
-        m->mean[k] += difference * share;
+        m->mean[k] = sf_mean_moved(m->mean[k], other->mean[k], difference, share);
         square += difference * difference;
     }
-    m->m2 += other->m2 + square * (a * share);
+    double between = square * (a * share);
+    m->m2 += other->m2 + (a > 0.0 ? between : 0.0);
 }
 
 static inline double sf_vector_moments_variance(const sf_vector_moments *m) {
@@ -149,7 +174,7 @@ static inline void sf_channel_moments_add(sf_channel_moments *m, const double x[
     double n = (double)++m->count;
     for (int k = 0; k < 3; ++k) {
         double deviation = x[k] - m->mean[k];
-        m->mean[k] += deviation / n;
+        m->mean[k] = sf_mean_divided(m->mean[k], x[k], deviation, n);
         m->m2[k] += deviation * (x[k] - m->mean[k]);
     }
 }
@@ -161,8 +186,8 @@ static inline void sf_channel_moments_merge(sf_channel_moments *m, const sf_chan
     m->count += other->count;
     for (int k = 0; k < 3; ++k) {
         double difference = other->mean[k] - m->mean[k];
-        m->mean[k] += difference * share;
-        m->m2[k] += other->m2[k] + difference * difference * (a * share);
+        m->mean[k] = sf_mean_moved(m->mean[k], other->mean[k], difference, share);
+        m->m2[k] += other->m2[k] + sf_square_weighted(difference, a * share);
     }
 }
 
@@ -203,7 +228,8 @@ SF_API void sf_channel_moments_merge_blocks(sf_channel_moments *m, const sf_bloc
 /* ---- weighted moments (West 1979) ---- */
 
 /* The weighted mean sum(w x) / sum(w), weights finite and >= 0; of weight 0 only the count is
- * kept. A sample or weight that is not finite, or a negative weight, counts as nonfinite. */
+ * kept. A sample or weight that is not finite, or a negative weight, counts as nonfinite. Where the
+ * sum of the weights exceeds the largest double, mean and variance are NaN. */
 typedef struct sf_weighted_moments {
     uint64_t count;
     double weight;        /* sum of w */
@@ -223,8 +249,10 @@ static inline void sf_weighted_moments_add(sf_weighted_moments *m, double x, dou
     double deviation = x - m->mean;
     m->weight += weight;
     m->weight_square += weight * weight;
-    m->mean += deviation * (weight / m->weight);
-    m->m2 += weight * (deviation * (x - m->mean));
+    m->mean = sf_mean_moved(m->mean, x, deviation, weight / m->weight);
+    double square = weight * (deviation * (x - m->mean));
+    m->m2 += isfinite(square) ? square : weight * deviation * (x - m->mean);
+    if (!isfinite(m->weight)) m->mean = m->m2 = (double)NAN;
 }
 
 static inline void sf_weighted_moments_merge(sf_weighted_moments *m, const sf_weighted_moments *other) {
@@ -232,9 +260,10 @@ static inline void sf_weighted_moments_merge(sf_weighted_moments *m, const sf_we
     m->count += other->count;
     if (!(other->weight > 0.0)) return;
     double share = other->weight / (m->weight + other->weight), difference = other->mean - m->mean;
-    m->m2 += other->m2 + difference * difference * (m->weight * share);
-    m->mean += difference * share;
+    m->m2 += other->m2 + sf_square_weighted(difference, m->weight * share);
+    m->mean = sf_mean_moved(m->mean, other->mean, difference, share);
     m->weight += other->weight;
+    if (!isfinite(m->weight)) m->mean = m->m2 = (double)NAN;
     m->weight_square += other->weight_square;
 }
 

@@ -69,6 +69,9 @@ class Moments(_Running[_core.Moments]):
     grows as log(N); cost is one pass over it, without the GIL. Threads may share moments, taking
     turns; one for each, merged in a fixed order, is faster and repeatable.
 
+    The mean of finite samples is finite. A sum of squared deviations above 1.8e308 is infinity, and
+    so are variance, error and half-width: give samples 1e154 apart in another unit.
+
     References
     ----------
     Welford 1962, "Note on a method for calculating corrected sums of squares and products".
@@ -307,6 +310,11 @@ def moments_from(state: tuple[int, float, float, int]) -> Moments:
 
 class WeightedMoments(Accumulator):
     """Running mean and variance of numbers that count by their weights.
+
+    Notes
+    -----
+    Near the largest double as in `Moments`; where the sum of the weights exceeds it, mean and
+    variance are NaN.
 
     References
     ----------
