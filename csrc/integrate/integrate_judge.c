@@ -15,6 +15,8 @@
 #define TOP_INDEX 0.25         /* … by this: known to a quarter of the index */
 #define LOOK_SHARE 0.5         /* of the error probability, for each look: of replicates … */
 #define INDEPENDENT_SHARE 0.8  /* … and of independent samples */
+#define FADING 0.6             /* of what a look holds back, from one to the next */
+#define UNSEEN_STEP_SHARE 0.2  /* of the error probability, for a step that all copies see alike */
 #define LARGE 0x1p500          /* beyond: squares and their sums may overflow */
 #define SMALL_UNIT 0x1p-540    /* the unit then: sums of 2^64 squares of the largest double fit */
 
@@ -169,9 +171,32 @@ static void estimate(const integration *in, const component *c, double *value, d
     *half_width /= c->unit;
 }
 
-void sf_integration_estimate(const integration *in, const component *c, double *value, double *half_width) {
+/* The part of a stratum to allow for, where no look has gone before: all R copies see the same of a
+ * step, p of a stratum from its edge, with probability p^R + (1 - p)^R. With p uniform, p is
+ * beyond this part nonetheless with probability 2 (1 - part)^(R + 1) / (R + 1). */
+static double part_allowed(const sf_integrate_options *o) {
+    double n = (double)o->replicates + 1.0, chance = UNSEEN_STEP_SHARE * (1.0 - o->confidence);
+    return 1.0 - fmin(1.0, pow(0.5 * chance * n, 1.0 / n));
+}
+
+/* Widens what falls faster than 1 / n, the error of a step that the points of a copy have a common
+ * offset to, if the last LOOKS_BACK looks do not bear it out; before the first, by the range of values. */
+static void hold_back(const integration *in, component *c, double *half_width) {
+    double n = (double)in->points, error = *half_width * n, least, greatest, held;
+    extent(in, c, &least, &greatest);
+    held = part_allowed(&in->options) * (greatest - least) / c->unit;
+    if (in->looks >= LOOKS_BACK || !(held > 0.0)) held = 0.0;
+    double share = 1.0;
+    for (uint32_t k = 0; k < LOOKS_BACK && k < in->looks; ++k, share *= FADING) held = fmax(held, share * c->errors[k]);
+    for (uint32_t k = LOOKS_BACK; k-- > 1;) c->errors[k] = c->errors[k - 1];
+    c->errors[0] = error;
+    *half_width = fmax(*half_width, held / n);
+}
+
+void sf_integration_estimate(const integration *in, component *c, double *value, double *half_width) {
     if (!in->independent || !sf_integration_range_is_known(in)) {
         estimate(in, c, value, half_width);
+        if (in->offset_in_common) hold_back(in, c, half_width);
         return;
     }
     double lower = sf_confidence_sequence_lower(&c->sequence), upper = sf_confidence_sequence_upper(&c->sequence);

@@ -60,6 +60,11 @@ static int is_random_within_strata(sf_pattern pattern, sf_scramble scramble) {
 sf_status sf_integration_find_randomization(integration *in, uint64_t total) {
     sf_status status = find_whether_fixed(in, total, &in->shifted);
     in->folded = !in->shifted && is_random_within_strata(in->options.pattern, in->options.scramble);
+    /* Hammersley's first coordinate is i / n, whatever the scramble of the others; R2's points lie in no
+     * strata: the gaps between n of them have three lengths. */
+    sf_pattern pattern = in->options.pattern;
+    in->offset_in_common = !in->independent && pattern != SF_PATTERN_R2 &&
+                           (!in->folded || pattern == SF_PATTERN_HAMMERSLEY);
     return status;
 }
 

@@ -15,6 +15,8 @@
 
 #define INTEGRATION_TAIL 256 /* extreme samples kept of either side, for the tail's index */
 
+#define LOOKS_BACK 3 /* whose half-widths bound the next */
+
 typedef struct replicate {
     uint64_t key;
     sf_point_set *set;
@@ -38,6 +40,7 @@ typedef struct component {
     tally *tallies; /* one a replicate */
     tail up, down;  /* of the values and of the negated values, all replicates' */
     double unit;    /* values are kept times this power of two: 1, or less where squares would overflow */
+    double errors[LOOKS_BACK]; /* half-widths times points of the last looks, the latest first */
     sf_confidence_sequence sequence;
     sf_integral *result;
 } component;
@@ -51,6 +54,7 @@ typedef struct integration {
     int independent; /* points: each sample is a replicate */
     int grows;       /* later points go on after earlier ones */
     int shifted, folded;
+    int offset_in_common; /* of all points of a copy, within their strata, in some dimension */
     uint64_t samples;
     uint64_t points;   /* of each replicate, at the last look */
     size_t block_rows; /* of each replicate in a block */
@@ -75,7 +79,7 @@ int sf_integration_range_is_known(const integration *in);
 sf_status sf_integration_take_values(integration *in, uint32_t r, size_t count, const double *values,
                                      const double *weights);
 void sf_integration_forget(integration *in);
-void sf_integration_estimate(const integration *in, const component *c, double *value, double *half_width);
+void sf_integration_estimate(const integration *in, component *c, double *value, double *half_width);
 /* The mean of what was seen, NaN where nothing was. */
 double sf_integration_mean(const integration *in, const component *c);
 int sf_integration_is_suspicious(const integration *in, const component *c);
