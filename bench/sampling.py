@@ -77,7 +77,7 @@ def bench_cache() -> None:
     kinds: list[tuple[str, int, dict[str, Any]]] = [
         ("sobol", d, {"scramble": s}) for d in (2, 16) for s in (None, "shift", "lms", "owen", "nested")
     ]
-    kinds += [("sz", 2, {}), ("sz", 16, {}), ("sobol", 64, {"pad": 2}), ("sobol", 64, {"pad": 4})]
+    kinds += [("sz", 2, {}), ("sz", 4, {}), ("sobol", 64, {"pad": 2}), ("sobol", 64, {"pad": 4})]
     for pattern, d, options in kinds:
         n = 2**18 // d
         float32, float64 = np.empty((n, d), np.float32), np.empty((n, d), np.float64)

@@ -57,7 +57,7 @@ static const sf_pattern_method methods[SF_PATTERN_COUNT] = {
                           SF_SOBOL_MAX_DIMS, COUNT_32, 0, SF_SCRAMBLE_OWEN, NET_SCRAMBLES, sf_net_prepare, sf_net_make},
     [SF_PATTERN_SZ] =
         {"sz",
-         "pairs of dimensions are (0, 2)-sequences in base 2, fours (0, 4) in base 4, all 16 (0, 16) (Ahmed 2024)",
+         "four dimensions: each half a (0, 2)-sequence in base 2, all a (0, 4)-sequence in base 4 (Ahmed 2024)",
          SF_SZ_MAX_DIMS, COUNT_32, 0, SF_SCRAMBLE_OWEN, NET_SCRAMBLES, sf_net_prepare, sf_net_make},
     [SF_PATTERN_LATTICE] = {"lattice", "rank-1 lattice with Kuo's generating vector; for periodic integrands",
                             SF_LATTICE_MAX_DIMS, ANY_COUNT, 0, SF_SCRAMBLE_NONE, SHIFTED, sf_lattice_prepare,
@@ -144,8 +144,8 @@ sf_status sf_points_check_pattern(sf_pattern pattern, uint32_t dims, sf_error *e
     if (pattern == SF_PATTERN_SZ && dims > SF_SZ_MAX_DIMS)
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
                        "d is %" PRIu32
-                       "; sz has 1 .. %u dimensions, beyond which pairs repeat one another: give pad 2 or "
-                       "4 for more, or take sobol",
+                       "; sz has 1 .. %u dimensions, beyond which pairs of few points repeat one another: give "
+                       "pad=4 (or pad=2) for more, or take sobol",
                        dims, SF_SZ_MAX_DIMS);
     if (dims < 1 || dims > methods[pattern].max_dims)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "d is %" PRIu32 "; %s has 1 .. %" PRIu32 " dimensions", dims,

@@ -51,7 +51,7 @@ def points(
         How many points. uniform, jittered, multijittered and orthogonal take some counts only,
         see `valid_counts`: of `total`, where that is given.
     d : int
-        Dimensions of a point, at least 1; at most 21,201 for sobol, 16 for sz, 65,536 where `pad`
+        Dimensions of a point, at least 1; at most 21,201 for sobol, 4 for sz, 65,536 where `pad`
         is given, 6,542 for halton, 4,391 for lattice, sqrt(n) + 1 for orthogonal.
     seed : int, None, numpy.random.Generator, numpy.random.SeedSequence or Rng
         An int in [0, 2^64). From another source 64 bits are taken, and it is advanced by that: the

@@ -12,7 +12,7 @@ Left out, and why (docs/qmc.md has the same list):
   own, as LatinHypercube's do, whose tests leave them out too.
 - orthogonal where the test asks for a count that is no square of a prime or a power of two, or for more
   dimensions than it has: test_1sample, test_reset, test_bounds, test_distribution.
-- test_bounds of sz in 100 dimensions and its test_distribution in 50: it has 16.
+- test_bounds of sz in 100 dimensions and its test_distribution in 50: it has 4.
 - test_distribution of random and jittered, which do not stratify each coordinate to 1e-2 at 1,024
   points in 50 dimensions.
 - test_optimizers: of uniform, which no exchange of coordinates changes; Lloyd's of hammersley and

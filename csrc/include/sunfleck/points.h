@@ -29,7 +29,7 @@ extern "C" {
 
 #define SF_SOBOL_MAX_DIMS 21201u /* Joe & Kuo's table */
 #define SF_HALTON_MAX_DIMS 6542u /* the primes below 2^16; hammersley has one more */
-#define SF_SZ_MAX_DIMS 16u       /* of one (0, 16)-sequence; pad makes more of the first four */
+#define SF_SZ_MAX_DIMS 4u        /* of one (0, 4)-sequence in base 4; pad makes more of them */
 #define SF_ORTHOGONAL_MAX_DIMS 4097u
 #define SF_LATTICE_MAX_DIMS 4391u /* of Kuo's generating vector */
 #define SF_POINTS_MAX_DIMS 65536u /* of the patterns without a table */
