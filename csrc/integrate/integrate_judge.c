@@ -180,17 +180,19 @@ static double part_allowed(const sf_integrate_options *o) {
 }
 
 /* Widens what falls faster than 1 / n, the error of a step that the points of a copy have a common
- * offset to, if the last LOOKS_BACK looks do not bear it out; before the first, by the range of values. */
+ * offset to, where the last looks do not bear it out: that all copies see the same of the step is a
+ * coincidence, which rarely lasts. Before so many looks, by the range of values. The part that older looks
+ * have fades to 0.36, near what the range has: a step's half-width is some 0.3 / n of it. */
 static void hold_back(const integration *in, component *c, double *half_width) {
-    double n = (double)in->points, error = *half_width * n, least, greatest, held;
+    double n = (double)in->points, least, greatest, held = 0.0, share = 1.0;
     extent(in, c, &least, &greatest);
-    held = part_allowed(&in->options) * (greatest - least) / c->unit;
-    if (in->looks >= LOOKS_BACK || !(held > 0.0)) held = 0.0;
-    double share = 1.0;
-    for (uint32_t k = 0; k < LOOKS_BACK && k < in->looks; ++k, share *= FADING) held = fmax(held, share * c->errors[k]);
-    for (uint32_t k = LOOKS_BACK; k-- > 1;) c->errors[k] = c->errors[k - 1];
-    c->errors[0] = error;
-    *half_width = fmax(*half_width, held / n);
+    if (in->looks < LOOKS_BACK && greatest > least)
+        held = (greatest - least) * (part_allowed(&in->options) / n) / c->unit;
+    for (uint32_t k = 0; k < LOOKS_BACK && k < in->looks; ++k, share *= FADING)
+        if (isfinite(c->past[k].half_width)) held = fmax(held, share * (c->past[k].points / n) * c->past[k].half_width);
+    for (uint32_t k = LOOKS_BACK; k-- > 1;) c->past[k] = c->past[k - 1];
+    c->past[0] = (past_look){n, *half_width};
+    *half_width = fmax(*half_width, held);
 }
 
 void sf_integration_estimate(const integration *in, component *c, double *value, double *half_width) {

@@ -63,8 +63,8 @@ sf_status sf_integration_find_randomization(integration *in, uint64_t total) {
     /* Hammersley's first coordinate is i / n, whatever the scramble of the others; R2's points lie in no
      * strata: the gaps between n of them have three lengths. */
     sf_pattern pattern = in->options.pattern;
-    in->offset_in_common = !in->independent && pattern != SF_PATTERN_R2 &&
-                           (!in->folded || pattern == SF_PATTERN_HAMMERSLEY);
+    in->offset_in_common =
+        !in->independent && pattern != SF_PATTERN_R2 && (!in->folded || pattern == SF_PATTERN_HAMMERSLEY);
     return status;
 }
 

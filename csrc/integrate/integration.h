@@ -35,12 +35,17 @@ typedef struct tail {
     double value[2 * INTEGRATION_TAIL];
 } tail;
 
+/* A look before: points of each replicate, and the half-width as the means had it. */
+typedef struct past_look {
+    double points, half_width;
+} past_look;
+
 /* One component of the function's values. */
 typedef struct component {
-    tally *tallies; /* one a replicate */
-    tail up, down;  /* of the values and of the negated values, all replicates' */
-    double unit;    /* values are kept times this power of two: 1, or less where squares would overflow */
-    double errors[LOOKS_BACK]; /* half-widths times points of the last looks, the latest first */
+    tally *tallies;             /* one a replicate */
+    tail up, down;              /* of the values and of the negated values, all replicates' */
+    double unit;                /* values are kept times this power of two: 1, or less where squares would overflow */
+    past_look past[LOOKS_BACK]; /* the latest first */
     sf_confidence_sequence sequence;
     sf_integral *result;
 } component;

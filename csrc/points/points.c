@@ -56,8 +56,7 @@ static const sf_pattern_method methods[SF_PATTERN_COUNT] = {
     [SF_PATTERN_SOBOL] = {"sobol", "Sobol' sequence with Joe & Kuo's direction numbers, Owen-scrambled (Burley 2020)",
                           SF_SOBOL_MAX_DIMS, COUNT_32, 0, SF_SCRAMBLE_OWEN, NET_SCRAMBLES, sf_net_prepare, sf_net_make},
     [SF_PATTERN_SZ] =
-        {"sz",
-         "four dimensions: each half a (0, 2)-sequence in base 2, all a (0, 4)-sequence in base 4 (Ahmed 2024)",
+        {"sz", "four dimensions: each half a (0, 2)-sequence in base 2, all a (0, 4)-sequence in base 4 (Ahmed 2024)",
          SF_SZ_MAX_DIMS, COUNT_32, 0, SF_SCRAMBLE_OWEN, NET_SCRAMBLES, sf_net_prepare, sf_net_make},
     [SF_PATTERN_LATTICE] = {"lattice", "rank-1 lattice with Kuo's generating vector; for periodic integrands",
                             SF_LATTICE_MAX_DIMS, ANY_COUNT, 0, SF_SCRAMBLE_NONE, SHIFTED, sf_lattice_prepare,

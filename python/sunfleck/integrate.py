@@ -290,7 +290,9 @@ def integrate(
     The copies of patterns that are random within their strata (sobol and sz but under "shift",
     latin, jittered, multijittered, orthogonal; halton and hammersley under "owen") are shifted and
     folded, ``x -> 1 - abs(2x - 1)``, each by itself, three of four in each dimension: else all may
-    see the same count beside a step, which is an error without a spread. Bounds are reached by
+    see the same count beside a step, which is an error without a spread. Where all points of a copy
+    have one offset within their strata (halton and hammersley otherwise, lattice, shifted nets,
+    uniform) the half-width falls no faster than 1/n until further looks bear it out. Bounds are reached by
     rational maps, t / (1 - t) for an infinite end, so that functions that fall faster than x^-2
     stay bounded.
 

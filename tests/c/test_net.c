@@ -307,7 +307,8 @@ static void test_levels_threads_and_teams_change_no_bit(void **state) {
         for (int s = 0; s < SCRAMBLES; ++s)
             for (int type = 0; type < 3; ++type)
                 for (uint32_t pad = 0; pad <= (s < 3 ? 0u : 2u); pad += 2) {
-                    sf_points_options o = options_for(nets[net], scrambles[s], nets[net] == SF_PATTERN_SZ && !pad ? SF_SZ_MAX_DIMS : 7, 99);
+                    sf_points_options o = options_for(nets[net], scrambles[s],
+                                                      nets[net] == SF_PATTERN_SZ && !pad ? SF_SZ_MAX_DIMS : 7, 99);
                     o.pad = pad;
                     o.first = 333;
                     unsetenv("SUNFLECK_ISA");

@@ -111,7 +111,10 @@ typedef struct sf_integral {
  * Points that lie at random within strata (sobol and sz but under shift, latin, jittered, multijittered,
  * orthogonal; halton and hammersley under owen) are shifted modulo 1 and folded, x -> 1 - |2x - 1|,
  * by each replicate for itself, three of four in each dimension. All replicates else may see the same number of points
- * beside a step across an axis, an error that no spread shows. docs/integrate.md has what this costs.
+ * beside a step across an axis, an error that no spread shows. Where all points of a replicate have one
+ * offset within their strata (halton and hammersley otherwise, lattice, shifted nets, uniform), no such map
+ * helps; the half-width then falls no faster than 1 / n until the next three looks bear it out, and at the
+ * first three is at least a part of the values' range over n. docs/integrate.md has what both cost.
  *
  * An infinite end is reached by t / (1 - t), two by s / (1 - s^2), s = 2t - 1: functions that fall
  * faster than x^-2 stay bounded.
