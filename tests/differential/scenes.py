@@ -354,7 +354,16 @@ class Maker:
         order = rng.permutation(len(self.items))
         world = World([self.items[i] for i in order], self.camera(), fog=fog, max_bounces=self.bounces, **sky)
         self.finish(world)
-        flags = [name for name, on in (("room", self.room), ("large lamps", self.lamp_room), ("fog", fog), ("instances", placed)) if on]
+        flags = [
+            name
+            for name, on in (
+                ("room", self.room),
+                ("large lamps", self.lamp_room),
+                ("fog", fog),
+                ("instances", placed),
+            )
+            if on
+        ]
         world.story = (
             f"{world.primitives} primitives, {own} lamps ({'/'.join(kinds)}), {len(sky['suns'])} suns, "
             f"{'an environment, ' if sky['environment'] else ''}{'a background, ' if any(sky['background']) else ''}"
