@@ -58,12 +58,13 @@ def generators() -> Iterator[tuple[str, Callable[[], str]]]:
 
 def patterns() -> Iterator[tuple[str, Callable[[], str]]]:
     for name, d, dtype in itertools.product(sf.PATTERNS, (1, 2, 7), ("float32", "float64", "uint32")):
-        n = sf.valid_counts(name, 256, d)[1]
         for scramble in SCRAMBLES:
             more = {} if scramble == "default" else {"scramble": scramble}
             yield (
                 f"points {name} {d} {dtype} {scramble}",
-                lambda a=(name, n), k=dict(d=d, seed=5, dtype=dtype, **more): digest(sf.points(*a, **k)),
+                lambda a=name, k=dict(d=d, seed=5, dtype=dtype, **more): digest(
+                    sf.points(a, sf.valid_counts(a, 256, k["d"])[1], **k)
+                ),
             )
 
 

@@ -30,15 +30,6 @@ const char *sf_aov_name(sf_aov aov) { return (unsigned)aov < SF_AOV_COUNT ? form
 
 static bool wants(const sf_aov_film *aovs, int aov) { return aovs->wanted >> aov & 1u; }
 
-void sf_aov_list(uint32_t wanted, char text[SF_AOV_TEXT_SIZE]) {
-    size_t length = 0;
-    strcpy(text, "none");
-    for (int k = 0; k < SF_AOV_COUNT; ++k)
-        if (wanted >> k & 1u)
-            length +=
-                (size_t)snprintf(text + length, SF_AOV_TEXT_SIZE - length, "%s%s", length ? "," : "", forms[k].name);
-}
-
 /* ---- memory ---- */
 
 static size_t round_up(size_t bytes) { return (bytes + SF_ALIGNMENT - 1) / SF_ALIGNMENT * SF_ALIGNMENT; }

@@ -49,8 +49,4 @@ void sf_aov_resolve_row(sf_film *film, uint32_t y);
 size_t sf_aov_channel_count(const sf_aov_film *aovs);
 sf_channel sf_aov_channel(const sf_aov_film *aovs, size_t index);
 
-/* Writes "albedo,depth", or "none". */
-#define SF_AOV_TEXT_SIZE 64
-void sf_aov_list(uint32_t wanted, char text[SF_AOV_TEXT_SIZE]);
-
 #endif

@@ -14,6 +14,7 @@
 #include "base/platform.h"
 #include "film/aov.h"
 #include "film/mask.h"
+#include "film/option_table.h"
 #include "film/signed_filter.h"
 #include "film/stopping.h"
 #include "scene/scene_internal.h"
@@ -315,33 +316,13 @@ static void describe(sf_film *film, const char *name, const char *format, ...) {
 }
 
 static void describe_options(sf_film *film, const sf_render_options *o) {
-    describe(film, "width", "%" PRIu32, o->width);
-    describe(film, "height", "%" PRIu32, o->height);
-    describe(film, "crop", "%" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32, o->crop[0], o->crop[1], o->crop[2],
-             o->crop[3]);
-    describe(film, "spp", "%" PRIu32, o->spp);
-    describe(film, "start", "%" PRIu32, o->start);
-    describe(film, "relative_tolerance", "%.17g", o->relative_tolerance);
-    describe(film, "absolute_tolerance", "%.17g", o->absolute_tolerance);
-    describe(film, "relmse", "%.17g", o->relmse);
-    describe(film, "confidence", "%.17g", o->confidence);
-    describe(film, "min_spp", "%" PRIu32, o->min_spp);
-    describe(film, "max_spp", "%" PRIu32, o->max_spp);
-    describe(film, "samples", "%" PRIu64, o->samples);
-    describe(film, "seconds", "%.17g", o->seconds);
-    describe(film, "pattern", "%s", sf_pattern_name(o->pattern));
-    describe(film, "pixel_filter", "%s", sf_pixel_filter_name(o->pixel_filter));
-    describe(film, "stop", "%s", sf_stop_rule_name(o->stop));
-    describe(film, "unbiased", "%s", o->unbiased ? "true" : "false");
-    describe(film, "seeds", "%s", sf_seed_policy_name(o->seeds));
-    describe(film, "seed", "%" PRIu64, o->seed);
-    describe(film, "threads", "%" PRIu32, o->threads);
-    describe(film, "tile_size", "%" PRIu32, o->tile_size);
-    describe(film, "roulette", "%" PRIu32, o->roulette);
-    char aovs[SF_AOV_TEXT_SIZE], mask[SF_MASK_TEXT_SIZE];
-    sf_aov_list(o->aovs, aovs);
+    char text[SF_OPTION_TEXT_SIZE], mask[SF_MASK_TEXT_SIZE];
+    const sf_option *option;
+    for (size_t i = 0; (option = sf_render_option(i)); ++i) {
+        sf_option_print(option, o, text);
+        describe(film, option->name, "%s", text);
+    }
     sf_mask_describe(film, mask);
-    describe(film, "aovs", "%s", aovs);
     describe(film, "mask", "%s", mask);
 }
 

@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* What options of a render mean together, and what is filled in where one is left open. */
+#include "film/render_options.h"
+
 #include <inttypes.h>
 #include <math.h>
 
@@ -8,7 +11,7 @@
 #include "base/platform.h"
 #include "film/block.h"
 #include "film/mask.h"
-#include "film/render_options.h"
+#include "film/option_table.h"
 #include "film/stopping.h"
 
 int sf_render_takes_pattern(sf_pattern pattern) {
@@ -17,25 +20,9 @@ int sf_render_takes_pattern(sf_pattern pattern) {
 }
 
 sf_render_options sf_render_options_default(void) {
-    return (sf_render_options){.width = 512,
-                               .height = 512,
-                               .confidence = 0.95,
-                               .min_spp = 32,
-                               .max_spp = 4096,
-                               .pattern = SF_PATTERN_SOBOL,
-                               .stop = SF_STOP_RULE_DYADIC,
-                               .tile_size = 16,
-                               .checkpoint_seconds = 30};
-}
-
-static sf_status check_range(const char *name, uint32_t value, uint32_t lowest, uint32_t highest, sf_error *error) {
-    if (value >= lowest && value <= highest) return SF_STATUS_OK;
-    return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s is %u; it must be %u to %u", name, value, lowest, highest);
-}
-
-static sf_status check_tolerance(const char *name, double value, sf_error *error) {
-    if (value >= 0 && value <= 1e18) return SF_STATUS_OK;
-    return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s is %g; it must be in [0, 1e18]", name, value);
+    sf_render_options options = {.checkpoint_seconds = 30};
+    sf_options_set_defaults(&options);
+    return options;
 }
 
 static sf_status check_crop(sf_render_options *o, sf_error *error) {
@@ -51,11 +38,7 @@ static sf_status check_crop(sf_render_options *o, sf_error *error) {
 }
 
 static sf_status check_sizes(sf_render_options *o, sf_error *error) {
-    sf_status status = check_range("width", o->width, 1, SF_MAX_IMAGE_SIZE, error);
-    if (!status) status = check_range("height", o->height, 1, SF_MAX_IMAGE_SIZE, error);
-    if (!status) status = check_crop(o, error);
-    if (!status) status = check_range("threads", o->threads, 0, SF_MAX_THREADS, error);
-    if (!status) status = check_range("tile_size", o->tile_size, SF_CELL_SIZE, 1024, error);
+    sf_status status = check_crop(o, error);
     if (!status && o->tile_size % SF_CELL_SIZE)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "tile_size is %u; it must be a multiple of %u", o->tile_size,
                        SF_CELL_SIZE);
@@ -64,21 +47,8 @@ static sf_status check_sizes(sf_render_options *o, sf_error *error) {
 }
 
 static sf_status check_budget(sf_render_options *o, sf_error *error) {
-    sf_status status = check_range("spp", o->spp, 0, SF_MAX_SPP, error);
-    if (!status) status = check_tolerance("relative_tolerance", o->relative_tolerance, error);
-    if (!status) status = check_tolerance("absolute_tolerance", o->absolute_tolerance, error);
-    if (!status) status = check_tolerance("relmse", o->relmse, error);
-    if (!status) status = check_range("max_spp", o->max_spp, 2, SF_MAX_SPP, error);
-    if (!status) status = check_range("min_spp", o->min_spp, 2, o->max_spp, error);
-    if (!status && o->roulette && (o->roulette < 2 || o->roulette > SF_MAX_BOUNCES))
-        return sf_fail(error, SF_STATUS_INVALID_VALUE, "roulette is %u; it must be 2 to %d, or 0 for none", o->roulette,
-                       SF_MAX_BOUNCES);
-    if (status) return status;
-    if (!(o->confidence > 0 && o->confidence < 1))
-        return sf_fail(error, SF_STATUS_INVALID_VALUE, "confidence is %g; it must be in (0, 1)", o->confidence);
-    if (!(o->seconds >= 0 && o->seconds <= 1e9))
-        return sf_fail(error, SF_STATUS_INVALID_VALUE, "seconds is %g; it must be in (0, 1e9], or 0 for no limit",
-                       o->seconds);
+    if (o->min_spp > o->max_spp)
+        return sf_fail(error, SF_STATUS_INVALID_VALUE, "min_spp is %u; it must be 2 to %u", o->min_spp, o->max_spp);
     if (o->start && (!o->spp || o->start > SF_MAX_SPP - o->spp))
         return sf_fail(error, SF_STATUS_INVALID_VALUE,
                        "start is %u and spp is %u; a start goes with a fixed spp, and start + spp is at most %u",
@@ -105,26 +75,7 @@ static sf_status check_budget(sf_render_options *o, sf_error *error) {
     return SF_STATUS_OK;
 }
 
-static sf_status check_choices(const sf_render_options *o, sf_error *error) {
-    const struct {
-        const char *what;
-        int value;
-        bool known;
-    } choices[] = {{"pattern", (int)o->pattern, sf_pattern_name(o->pattern) != NULL},
-                   {"pixel_filter", (int)o->pixel_filter, sf_pixel_filter_name(o->pixel_filter) != NULL},
-                   {"stop", (int)o->stop, sf_stop_rule_name(o->stop) != NULL},
-                   {"seeds", (int)o->seeds, sf_seed_policy_name(o->seeds) != NULL}};
-    for (size_t i = 0; i < sizeof choices / sizeof *choices; ++i)
-        if (!choices[i].known)
-            return sf_fail(error, SF_STATUS_INVALID_VALUE, "%s is %d; it must be one of the enumeration's values",
-                           choices[i].what, choices[i].value);
-    return SF_STATUS_OK;
-}
-
 static sf_status check_aovs(const sf_render_options *o, sf_error *error) {
-    if (o->aovs >> SF_AOV_COUNT)
-        return sf_fail(error, SF_STATUS_INVALID_VALUE, "aovs is 0x%x; it must be a union of bits 0 to %d", o->aovs,
-                       SF_AOV_COUNT - 1);
     bool halves = o->aovs >> SF_AOV_HALF_A & 1u || o->aovs >> SF_AOV_HALF_B & 1u;
     if (halves && o->spp && o->start / SF_LANES == (o->start + o->spp - 1) / SF_LANES)
         return sf_fail(
@@ -151,9 +102,9 @@ static sf_status check_checkpoint(const sf_render_options *o, sf_error *error) {
 }
 
 sf_status sf_render_options_complete(sf_render_options *options, sf_error *error) {
-    sf_status status = check_sizes(options, error);
+    sf_status status = sf_options_check_ranges(options, error);
+    if (!status) status = check_sizes(options, error);
     if (!status) status = check_budget(options, error);
-    if (!status) status = check_choices(options, error);
     if (!status) status = check_aovs(options, error);
     if (!status) status = sf_mask_complete(options, error);
     if (!status) status = check_checkpoint(options, error);

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-/* What a checkpoint is of: options and scene, as one table that is written, compared and read. A new
- * option is one more line. */
+/* What a checkpoint is of: the options of the table of options, and the scene; written, compared and read. */
 
 #include "render/checkpoint_identity.h"
 
@@ -13,80 +12,32 @@
 
 #include "base/error.h"
 #include "film/mask.h"
+#include "film/option_table.h"
 #include "film/render_options.h"
 #include "film/stopping.h"
 
-/* ---- the tables ---- */
+/* ---- options in a container: "option." before the name ---- */
 
-/* How an option of a render may differ from the checkpoint's. */
-typedef enum rule {
-    EQUAL,     /* not at all */
-    LARGER,    /* larger is more of the same */
-    TOLERANCE, /* the tolerance that results may be smaller */
-    FREE       /* decides no bit of the picture */
-} rule;
-
-/* An option: a value, several, or a name that stands for an enumeration's. */
-typedef struct option_field {
-    const char *name; /* in the file; without "option." in messages */
-    size_t offset;
+typedef struct option_array {
+    char name[48];
     sf_array_type type;
     uint32_t width;
-    rule rule;
-    const char *(*name_of)(int); /* type SF_ARRAY_TEXT only */
-} option_field;
+} option_array;
 
-static const char *name_pattern(int value) { return sf_pattern_name((sf_pattern)value); }
-static const char *name_filter(int value) { return sf_pixel_filter_name((sf_pixel_filter)value); }
-static const char *name_stop(int value) { return sf_stop_rule_name((sf_stop_rule)value); }
-static const char *name_seeds(int value) { return sf_seed_policy_name((sf_seed_policy)value); }
-
-#define OPTION(field, type, width, rule) {"option." #field, offsetof(sf_render_options, field), type, width, rule, NULL}
-#define OPTION_NAME(field, name_of) \
-    {"option." #field, offsetof(sf_render_options, field), SF_ARRAY_TEXT, 1, EQUAL, name_of}
-
-static const option_field option_fields[] = {
-    OPTION(width, SF_ARRAY_U32, 1, EQUAL),
-    OPTION(height, SF_ARRAY_U32, 1, EQUAL),
-    OPTION(crop, SF_ARRAY_U32, 4, EQUAL),
-    OPTION(spp, SF_ARRAY_U32, 1, LARGER),
-    OPTION(start, SF_ARRAY_U32, 1, EQUAL),
-    OPTION(relative_tolerance, SF_ARRAY_F64, 1, TOLERANCE),
-    OPTION(absolute_tolerance, SF_ARRAY_F64, 1, TOLERANCE),
-    OPTION(relmse, SF_ARRAY_F64, 1, TOLERANCE),
-    OPTION(confidence, SF_ARRAY_F64, 1, EQUAL),
-    OPTION(min_spp, SF_ARRAY_U32, 1, EQUAL),
-    OPTION(max_spp, SF_ARRAY_U32, 1, LARGER),
-    OPTION(samples, SF_ARRAY_U64, 1, LARGER),
-    OPTION(aovs, SF_ARRAY_U32, 1, EQUAL),
-    OPTION(seconds, SF_ARRAY_F64, 1, FREE),
-    OPTION_NAME(pattern, name_pattern),
-    OPTION_NAME(pixel_filter, name_filter),
-    OPTION_NAME(stop, name_stop),
-    OPTION(unbiased, SF_ARRAY_U32, 1, EQUAL),
-    OPTION_NAME(seeds, name_seeds),
-    OPTION(seed, SF_ARRAY_U64, 1, EQUAL),
-    OPTION(threads, SF_ARRAY_U32, 1, FREE),
-    OPTION(tile_size, SF_ARRAY_U32, 1, FREE),
-    OPTION(roulette, SF_ARRAY_U32, 1, EQUAL),
-};
-
-#define OPTION_COUNT (sizeof option_fields / sizeof *option_fields)
+static option_array array_of(const sf_option *option) {
+    option_array array = {.type = option->type == SF_OPTION_FLOAT64  ? SF_ARRAY_F64
+                                  : option->type == SF_OPTION_UINT64 ? SF_ARRAY_U64
+                                  : option->type == SF_OPTION_CHOICE ? SF_ARRAY_TEXT
+                                                                     : SF_ARRAY_U32,
+                          .width = option->type == SF_OPTION_RECTANGLE ? 4 : 1};
+    snprintf(array.name, sizeof array.name, "option.%s", option->name);
+    return array;
+}
 
 /* ---- writing ---- */
 
 static void list_text(sf_array_list *list, const char *name, const char *text) {
     sf_array_list_add(list, name, SF_ARRAY_TEXT, 1, strlen(text), (void *)text, 1); /* that is only read */
-}
-
-static size_t option_size(const option_field *field) {
-    return field->type == SF_ARRAY_U32 ? 4 * field->width : 8 * field->width;
-}
-
-static int enumeration_value(const option_field *field, const sf_render_options *options) {
-    int value;
-    memcpy(&value, (const char *)options + field->offset, sizeof value);
-    return value;
 }
 
 void sf_checkpoint_list_mask(sf_array_list *list, sf_film *film) {
@@ -101,12 +52,15 @@ void sf_checkpoint_list_identity(sf_array_list *list, sf_film *film) {
     sf_array_list_add(list, "scene_hash", SF_ARRAY_U64, 1, 1, &film->scene_hash, 8);
     sf_array_list_add(list, "mask_hash", SF_ARRAY_U64, 1, 1, &film->mask_hash, 8);
     if (film->mask) sf_checkpoint_list_mask(list, film);
-    for (size_t i = 0; i < OPTION_COUNT; ++i) {
-        const option_field *f = option_fields + i;
-        if (f->name_of)
-            list_text(list, f->name, f->name_of(enumeration_value(f, &film->options)));
+    const sf_option *option;
+    for (size_t i = 0; (option = sf_render_option(i)); ++i) {
+        option_array array = array_of(option);
+        const char *name = sf_array_list_name(list, array.name);
+        if (array.type == SF_ARRAY_TEXT)
+            list_text(list, name, option->name_of(sf_option_choice(option, &film->options)));
         else
-            sf_array_list_add(list, f->name, f->type, f->width, 1, (char *)&film->options + f->offset, option_size(f));
+            sf_array_list_add(list, name, array.type, array.width, 1, (char *)&film->options + option->offset,
+                              sf_option_size(option));
     }
 }
 
@@ -123,26 +77,29 @@ sf_status sf_checkpoint_take_text(const sf_container *file, const char *name, ch
 }
 
 /* The enumeration's value of that name. */
-static sf_status find_name(const sf_container *file, const option_field *field, sf_render_options *options,
-                           sf_error *error) {
+static sf_status find_name(const sf_container *file, const sf_option *option, const char *name,
+                           sf_render_options *options, sf_error *error) {
     char text[SF_CHECKPOINT_TEXT_SIZE];
-    sf_status status = sf_checkpoint_take_text(file, field->name, text, error);
+    sf_status status = sf_checkpoint_take_text(file, name, text, error);
     if (status) return status;
-    for (int value = 0; field->name_of(value); ++value) {
-        if (strcmp(field->name_of(value), text) != 0) continue;
-        memcpy((char *)options + field->offset, &value, sizeof value);
+    for (int value = 0; option->name_of(value); ++value) {
+        if (strcmp(option->name_of(value), text) != 0) continue;
+        memcpy((char *)options + option->offset, &value, sizeof value);
         return SF_STATUS_OK;
     }
     return sf_fail(error, SF_STATUS_IO, "checkpoint '%s' has %s '%s', which this Sunfleck does not know", file->path,
-                   field->name, text);
+                   name, text);
 }
 
 sf_status sf_checkpoint_take_options(const sf_container *file, sf_render_options *options, sf_error *error) {
     *options = sf_render_options_default();
-    for (size_t i = 0; i < OPTION_COUNT; ++i) {
-        const option_field *f = option_fields + i;
-        sf_array array = {f->name, f->type, f->width, 1, (char *)options + f->offset, option_size(f)};
-        sf_status status = f->name_of ? find_name(file, f, options, error) : sf_container_take(file, &array, error);
+    const sf_option *option;
+    for (size_t i = 0; (option = sf_render_option(i)); ++i) {
+        option_array kept = array_of(option);
+        sf_array array = {
+            kept.name, kept.type, kept.width, 1, (char *)options + option->offset, sf_option_size(option)};
+        sf_status status = kept.type == SF_ARRAY_TEXT ? find_name(file, option, kept.name, options, error)
+                                                      : sf_container_take(file, &array, error);
         if (status) return status;
     }
     sf_error problem;
@@ -186,26 +143,16 @@ static void print_number(char text[SF_CHECKPOINT_TEXT_SIZE], double value) {
     if (strtod(text, NULL) != value) snprintf(text, SF_CHECKPOINT_TEXT_SIZE, "%.17g", value);
 }
 
-static double option_number(const option_field *field, const sf_render_options *options) {
-    const char *at = (const char *)options + field->offset;
-    if (field->type == SF_ARRAY_F64) return *(const double *)at;
-    if (field->type == SF_ARRAY_U64) return (double)*(const uint64_t *)at;
-    return *(const uint32_t *)at;
-}
-
-static void print_option(char text[SF_CHECKPOINT_TEXT_SIZE], const option_field *field,
+static void print_option(char text[SF_CHECKPOINT_TEXT_SIZE], const sf_option *option,
                          const sf_render_options *options) {
-    const char *at = (const char *)options + field->offset;
-    const uint32_t *four = (const uint32_t *)at;
-    if (field->name_of)
-        snprintf(text, SF_CHECKPOINT_TEXT_SIZE, "%s", field->name_of(enumeration_value(field, options)));
-    else if (field->width == 4)
+    const uint32_t *four = (const uint32_t *)(const void *)((const char *)options + option->offset);
+    if (option->type == SF_OPTION_FLOAT64)
+        print_number(text, sf_option_number(option, options));
+    else if (option->type == SF_OPTION_RECTANGLE)
         snprintf(text, SF_CHECKPOINT_TEXT_SIZE, "(%" PRIu32 ", %" PRIu32 ", %" PRIu32 ", %" PRIu32 ")", four[0],
                  four[1], four[2], four[3]);
-    else if (field->type == SF_ARRAY_U64)
-        snprintf(text, SF_CHECKPOINT_TEXT_SIZE, "%" PRIu64, *(const uint64_t *)at);
     else
-        print_number(text, option_number(field, options));
+        sf_option_print(option, options, text);
 }
 
 /* Whether our tolerance is at most theirs; before the level is known no decision has used it. */
@@ -219,27 +166,27 @@ static bool tolerance_allows(const sf_render_options *theirs, const sf_render_op
 }
 
 /* A larger count; but a fixed count is not a larger open one. */
-static bool count_allows(const option_field *field, const sf_render_options *theirs, const sf_render_options *ours) {
-    double a = option_number(field, theirs), b = option_number(field, ours);
+static bool count_allows(const sf_option *option, const sf_render_options *theirs, const sf_render_options *ours) {
+    double a = sf_option_number(option, theirs), b = sf_option_number(option, ours);
     return b > a && a > 0;
 }
 
-static void compare_option(differences *d, const option_field *field, const sf_render_options *theirs,
+static void compare_option(differences *d, const sf_option *option, const sf_render_options *theirs,
                            const sf_render_options *ours, const sf_round_state *state) {
-    size_t size = field->name_of ? sizeof(int) : option_size(field);
-    if (field->rule == FREE || !memcmp((const char *)theirs + field->offset, (const char *)ours + field->offset, size))
+    if (option->resume == SF_RESUME_FREE ||
+        !memcmp((const char *)theirs + option->offset, (const char *)ours + option->offset, sf_option_size(option)))
         return;
-    if (field->offset == offsetof(sf_render_options, samples) && count_allows(field, theirs, ours)) return;
-    if ((field->rule == LARGER && count_allows(field, theirs, ours)) ||
-        (field->rule == TOLERANCE && tolerance_allows(theirs, ours, state))) {
+    if (option->offset == offsetof(sf_render_options, samples) && count_allows(option, theirs, ours)) return;
+    if ((option->resume == SF_RESUME_LARGER && count_allows(option, theirs, ours)) ||
+        (option->resume == SF_RESUME_TOLERANCE && tolerance_allows(theirs, ours, state))) {
         d->more = true;
         return;
     }
     char their_text[SF_CHECKPOINT_TEXT_SIZE], our_text[SF_CHECKPOINT_TEXT_SIZE];
-    print_option(their_text, field, theirs);
-    print_option(our_text, field, ours);
-    add_difference(d, field->name + strlen("option."), their_text, our_text);
-    d->limits |= field->rule != EQUAL;
+    print_option(their_text, option, theirs);
+    print_option(our_text, option, ours);
+    add_difference(d, option->name, their_text, our_text);
+    d->limits |= option->resume != SF_RESUME_EQUAL;
 }
 
 /* "none", or the hash. */
@@ -282,7 +229,8 @@ sf_status sf_checkpoint_match(const sf_container *file, const sf_film *film, con
     sf_status status = sf_checkpoint_take_options(file, &theirs, error);
     if (!status) status = compare_identity(&d, file, film, error);
     if (status) return status;
-    for (size_t i = 0; i < OPTION_COUNT; ++i) compare_option(&d, option_fields + i, &theirs, &film->options, state);
+    const sf_option *option;
+    for (size_t i = 0; (option = sf_render_option(i)); ++i) compare_option(&d, option, &theirs, &film->options, state);
     *more = d.more;
     if (d.theirs[0])
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "checkpoint '%.100s' was made with %s; this render has %s%s",

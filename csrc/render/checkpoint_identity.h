@@ -5,6 +5,8 @@
 #ifndef SUNFLECK_CHECKPOINT_IDENTITY_H
 #define SUNFLECK_CHECKPOINT_IDENTITY_H
 
+#include <string.h>
+
 #include "base/container.h"
 #include "render/checkpoint.h"
 
@@ -14,7 +16,14 @@
 typedef struct sf_array_list {
     sf_array arrays[SF_CHECKPOINT_ARRAYS];
     size_t count;
+    char names[32][48]; /* those made for the list */
+    size_t name_count;
 } sf_array_list;
+
+/* A copy of the name that lives as long as the list. */
+static inline const char *sf_array_list_name(sf_array_list *list, const char *name) {
+    return memcpy(list->names[list->name_count++], name, sizeof *list->names);
+}
 
 static inline void sf_array_list_add(sf_array_list *list, const char *name, sf_array_type type, uint32_t width,
                                      uint64_t rows, void *data, size_t stride) {

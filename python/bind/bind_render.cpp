@@ -7,6 +7,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <array>
 #include <cstring>
 #include <exception>
 #include <memory>
@@ -156,25 +157,66 @@ void on_notice(const char *message, void *user) { static_cast<watcher *>(user)->
 
 int on_progress(const sf_progress *progress, void *user) { return static_cast<watcher *>(user)->look(progress); }
 
-// The value whose name is `name`; what C names is what is allowed.
-template <class Enum>
-Enum find(const char *what, const std::string &name, const char *(*name_of)(Enum)) {
+// Whether a render takes the k-th value of a choice: of patterns, not all.
+bool is_allowed(const sf_option &option, int k) {
+    return std::strcmp(option.name, "pattern") != 0 || sf_render_takes_pattern(static_cast<sf_pattern>(k));
+}
+
+// The value of a choice whose name is `name`; what C names is what is allowed.
+int find(const sf_option &option, const std::string &name) {
     std::string allowed;
-    for (int k = 0;; ++k) {
-        const char *known = name_of(static_cast<Enum>(k));
-        if (!known) break;
-        if (sf_name_matches(name.c_str(), known)) return static_cast<Enum>(k);
-        allowed += (k ? ", " : "") + std::string(known);
+    for (int k = 0; const char *known = option.name_of(k); ++k) {
+        if (sf_name_matches(name.c_str(), known)) return k;
+        if (is_allowed(option, k)) allowed += (allowed.empty() ? "" : ", ") + std::string(known);
     }
-    std::string message = std::string(what) + " is '" + name + "'; it must be one of " + allowed;
+    std::string message = std::string(option.name) + " is '" + name + "'; it must be one of " + allowed;
     throw nb::value_error(message.c_str());
 }
 
-sf_pattern find_pattern(const std::string &name) {
-    sf_pattern pattern;
-    sf_error error;
-    raise_unless_ok(sf_pattern_find(name.c_str(), &pattern, &error), error);
-    return pattern;
+uint32_t find_all(const sf_option &option, const std::vector<std::string> &names) {
+    uint32_t all = 0;
+    for (const std::string &name : names) all |= 1u << find(option, name);
+    return all;
+}
+
+template <class T>
+void store(sf_render_options &options, const sf_option &option, const T &value) {
+    std::memcpy(reinterpret_cast<char *>(&options) + option.offset, &value, sizeof value);
+}
+
+void set_option(sf_render_options &options, const sf_option &option, nb::handle value) {
+    switch (option.type) {
+        case SF_OPTION_UINT32: return store(options, option, nb::cast<uint32_t>(value));
+        case SF_OPTION_UINT64: return store(options, option, nb::cast<uint64_t>(value));
+        case SF_OPTION_FLOAT64: return store(options, option, nb::cast<double>(value));
+        case SF_OPTION_FLAG: return store(options, option, uint32_t{nb::cast<bool>(value)});
+        case SF_OPTION_CHOICE: return store(options, option, find(option, nb::cast<std::string>(value)));
+        case SF_OPTION_NAMES:
+            return store(options, option, find_all(option, nb::cast<std::vector<std::string>>(value)));
+        case SF_OPTION_RECTANGLE: return store(options, option, nb::cast<std::array<uint32_t, 4>>(value));
+    }
+}
+
+// Options of the table of options, by their names.
+using option_values = nb::typed<nb::dict, nb::str, nb::any>;
+
+sf_render_options options_of(const option_values &given) {
+    sf_render_options options = sf_render_options_default();
+    size_t known = 0;
+    for (size_t i = 0; const sf_option *option = sf_render_option(i); ++i) {
+        if (!given.contains(option->name)) continue;
+        set_option(options, *option, given[option->name]);
+        ++known;
+    }
+    if (known == given.size()) return options;
+    for (auto [name, value] : given) {
+        size_t i = 0;
+        while (sf_render_option(i) && nb::cast<std::string>(name) != sf_render_option(i)->name) ++i;
+        if (sf_render_option(i)) continue;
+        std::string message = "a render has no option '" + nb::cast<std::string>(name) + "'";
+        throw nb::type_error(message.c_str());
+    }
+    return options;
 }
 
 // Rows of the full frame, one byte a pixel.
@@ -191,40 +233,12 @@ void set_mask(sf_render_options &options, const pixel_mask &mask) {
     options.mask_stride = mask.shape(1);
 }
 
-film_handle *render(const scene_handle &scene, uint32_t width, uint32_t height, std::array<uint32_t, 4> crop,
-                    uint32_t spp, uint32_t start, double relative_tolerance, double absolute_tolerance, double relmse,
-                    double confidence, uint32_t min_spp, uint32_t max_spp, uint64_t samples, double seconds,
-                    const std::string &pattern, const std::string &pixel_filter, const std::string &stop, bool unbiased,
-                    const std::string &seeds, uint64_t seed, uint32_t threads, uint32_t tile_size, uint32_t roulette,
-                    bool profile, const std::vector<std::string> &aovs, std::optional<pixel_mask> mask,
+film_handle *render(const scene_handle &scene, const option_values &given, bool profile, std::optional<pixel_mask> mask,
                     const std::optional<std::string> &checkpoint, double checkpoint_seconds, nb::object notice,
                     nb::object observer) {
     watcher watch{observer, notice, false, nullptr};
-    sf_render_options options = sf_render_options_default();
-    options.width = width;
-    options.height = height;
-    for (int k = 0; k < 4; ++k) options.crop[k] = crop[k];
-    options.spp = spp;
-    options.start = start;
-    options.relative_tolerance = relative_tolerance;
-    options.absolute_tolerance = absolute_tolerance;
-    options.relmse = relmse;
-    options.confidence = confidence;
-    options.min_spp = min_spp;
-    options.max_spp = max_spp;
-    options.samples = samples;
-    options.seconds = seconds;
-    options.pattern = find_pattern(pattern);
-    options.pixel_filter = find("pixel_filter", pixel_filter, sf_pixel_filter_name);
-    options.stop = find("stop", stop, sf_stop_rule_name);
-    options.unbiased = unbiased;
-    options.seeds = find("seeds", seeds, sf_seed_policy_name);
-    options.seed = seed;
-    options.threads = threads;
-    options.tile_size = tile_size;
-    options.roulette = roulette;
+    sf_render_options options = options_of(given);
     options.profile = profile;
-    for (const std::string &name : aovs) options.aovs |= 1u << find("aovs", name, sf_aov_name);
     if (mask) set_mask(options, *mask);
     options.progress = on_progress;
     options.progress_user = &watch;
@@ -323,11 +337,25 @@ void bind_render(nb::module_ &m) {
         return names;
     });
 
-    m.def("render", &render, nb::rv_policy::take_ownership, "scene"_a, nb::kw_only(), "width"_a, "height"_a, "crop"_a,
-          "spp"_a, "start"_a, "relative_tolerance"_a, "absolute_tolerance"_a, "relmse"_a, "confidence"_a, "min_spp"_a,
-          "max_spp"_a, "samples"_a, "seconds"_a, "pattern"_a, "pixel_filter"_a, "stop"_a, "unbiased"_a, "seeds"_a,
-          "seed"_a, "threads"_a, "tile_size"_a, "roulette"_a, "profile"_a, "aovs"_a, "mask"_a.none(),
-          "checkpoint"_a.none(), "checkpoint_seconds"_a, "notice"_a, "progress"_a.none());
+    m.def("render", &render, nb::rv_policy::take_ownership, "scene"_a, "options"_a, nb::kw_only(), "profile"_a,
+          "mask"_a.none(), "checkpoint"_a.none(), "checkpoint_seconds"_a, "notice"_a, "progress"_a.none());
+    m.def("render_options", [] {
+        nb::typed<nb::dict, nb::str, nb::typed<nb::tuple, nb::str, nb::any, nb::typed<nb::list, nb::str>>> options;
+        for (size_t i = 0; const sf_option *option = sf_render_option(i); ++i) {
+            nb::object otherwise = nb::cast(option->otherwise);
+            if (option->type == SF_OPTION_CHOICE)
+                otherwise = nb::cast(option->name_of(static_cast<int>(option->otherwise)));
+            else if (option->type == SF_OPTION_FLAG)
+                otherwise = nb::cast(option->otherwise != 0);
+            else if (option->type != SF_OPTION_FLOAT64)
+                otherwise = nb::cast(static_cast<uint64_t>(option->otherwise));
+            nb::list names;
+            for (int k = 0; option->name_of && option->name_of(k); ++k)
+                if (is_allowed(*option, k)) names.append(option->name_of(k));
+            options[option->name] = nb::make_tuple(option->text, otherwise, names);
+        }
+        return options;
+    });
     m.def("load_film", &load_film, nb::rv_policy::take_ownership, "path"_a);
     m.def("merge_films", &merge_films, nb::rv_policy::take_ownership, "films"_a);
 }

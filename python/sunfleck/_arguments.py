@@ -100,7 +100,7 @@ def text(name: str, value: Any) -> str:
 
 
 def choice(name: str, value: Any, allowed: Iterable[str], lead: str = "choose one of") -> str:
-    """The one of the allowed names that a string is; capital letters are as small ones, and "-", "_" and " " are one."""
+    """The one of the allowed names that a string is; capital letters are as small ones, "-" and " " as "_"."""
     names = tuple(allowed)
     given = text(name, value)
     if given in names:

@@ -279,6 +279,15 @@ def test_names_are_the_same_in_upper_and_lower_case() -> None:
     assert image.color.shape == (8, 8, 3)
 
 
+@pytest.mark.parametrize("separator", ["_", "-", " "])
+def test_one_separator_of_words_stands_for_all(separator: str) -> None:
+    names = {"stop": f"Standard{separator}error", "pixel_filter": f"gaussian{separator}Truncated"}
+    image = sf.render(sf.scenes.penumbra(), 8, 8, spp=1, **names)  # type: ignore[arg-type]
+    assert image.metadata["stop"] == "standard_error"
+    assert image.metadata["pixel_filter"] == "gaussian_truncated"
+    assert not any(c in value for value in (*sf.STOP_REASONS, *sf.PIXEL_FILTERS, *sf.AOVS) for c in "- ")
+
+
 @pytest.mark.parametrize("dtype", ["float32", "float64", "uint32"])
 def test_out_sets_the_dtype(dtype: str) -> None:
     out = np.empty((8, 2), dtype)

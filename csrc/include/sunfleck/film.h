@@ -207,6 +207,41 @@ typedef struct sf_render_options {
 
 SF_API sf_render_options sf_render_options_default(void);
 
+/* The options that describe a picture, as a table: for bindings, commands and files. What a render is told beside
+ * them (mask, progress, checkpoint, notice, profile) is not in it. */
+typedef enum sf_option_type {
+    SF_OPTION_UINT32 = 0, /* uint32_t */
+    SF_OPTION_UINT64,     /* uint64_t */
+    SF_OPTION_FLOAT64,    /* double */
+    SF_OPTION_FLAG,       /* uint32_t, 0 or not */
+    SF_OPTION_CHOICE,     /* an enumeration */
+    SF_OPTION_NAMES,      /* uint32_t, bit k for the k-th name */
+    SF_OPTION_RECTANGLE   /* uint32_t[4]: x0, y0, x1, y1, half open */
+} sf_option_type;
+
+/* How a render may differ in an option from the checkpoint that it goes on from. */
+typedef enum sf_option_resume {
+    SF_RESUME_EQUAL = 0, /* not at all */
+    SF_RESUME_LARGER,    /* larger is more of the same */
+    SF_RESUME_TOLERANCE, /* the tolerance that results may be smaller */
+    SF_RESUME_FREE       /* it decides no bit of the picture */
+} sf_option_resume;
+
+typedef struct sf_option {
+    const char *name; /* of the field */
+    sf_option_type type;
+    sf_option_resume resume;
+    size_t offset; /* of the field in sf_render_options */
+    double otherwise, lowest,
+        highest;         /* default; range of a number, ends included. 0 is allowed where it is the default */
+    const char *allowed; /* the range in words; NULL: from lowest to highest */
+    const char *(*name_of)(int value); /* of a choice and of names, NULL beyond; NULL for others */
+    const char *text;                  /* what it is, in a line */
+} sf_option;
+
+/* The option at an index; NULL beyond. Thread-safe. */
+SF_API const sf_option *sf_render_option(size_t index);
+
 typedef struct sf_film sf_film;
 
 /* The film that a checkpoint holds: pixels that had not stopped are marked interrupted. Fails with

@@ -14,7 +14,7 @@ import sys
 import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,21 +116,12 @@ def _add_render(commands: argparse._SubParsersAction[_Parser]) -> None:
     add = accuracy.add_argument
     add("--tolerance", type=float, metavar="X", help="a pixel is done when its half-width is X of the mean level")
     add("--relmse", type=float, metavar="X", help="instead, the relative mean square error of the whole picture")
-    add("--confidence", type=float, default=0.95, metavar="P", help="of the half-widths; default 0.95")
     add("--spp", type=int, metavar="N", help="a fixed count of samples a pixel; not with --tolerance")
-    add("--min-spp", type=int, default=32, metavar="N", help="before the first decision; default 32")
-    add("--max-spp", type=int, default=4096, metavar="N", help="at the most; default 4096")
     add("--seconds", type=float, metavar="T", help="a time limit; alone, a budget that is spent on every pixel")
 
     sampling = parser.add_argument_group("sampling")
-    add = sampling.add_argument
-    add("--roulette", type=int, default=0, metavar="N", help="Russian roulette from bounce N on; default 0: none")
-    add("--pattern", default="sobol", metavar="NAME", help=f"{', '.join(sf.RENDER_PATTERNS)}; default sobol")
-    add("--pixel-filter", default="box", metavar="NAME", help=f"{', '.join(sf.PIXEL_FILTERS)}; default box")
-    add("--stop", default="dyadic", metavar="RULE", help="dyadic, replicates or standard_error; default dyadic")
-    add("--unbiased", action="store_true", help="a pilot decides the counts, a second set is shown; costs twice")
-    add("--seeds", default="pixel", metavar="POLICY", help="pixel, thread, shared; default pixel")
-    add("--seed", type=int, default=0, metavar="N", help="default 0")
+    for name, option in _plain_options().items():
+        _add_plain(accuracy if name in ("confidence", "min_spp", "max_spp") else sampling, name, option)
 
     work = parser.add_argument_group("work")
     add = work.add_argument
@@ -140,6 +131,24 @@ def _add_render(commands: argparse._SubParsersAction[_Parser]) -> None:
     add("--crop", type=int, nargs=4, metavar=("X0", "Y0", "X1", "Y1"), help="half open, in pixels of the full frame")
     add("--checkpoint", metavar="FILE", help="keep the render's state there, and go on from it where it exists")
     add("--checkpoint-seconds", type=float, default=30.0, metavar="T", help="between two writes; default 30")
+
+
+def _plain_options() -> dict[str, tuple[str, Any, list[str]]]:
+    """Text, default and names, from the library's table, of the options that are here as in `sf.render`."""
+    apart = {"crop", "start", "relative_tolerance", "absolute_tolerance", "samples", "threads", "aovs"}
+    apart |= {"width", "height", "spp", "relmse", "seconds"}  # with words or defaults of their own above and below
+    return {name: option for name, option in _core.render_options().items() if name not in apart}
+
+
+def _add_plain(group: argparse._ArgumentGroup, name: str, option: tuple[str, Any, list[str]]) -> None:
+    text, otherwise, names = option
+    flag = f"--{name.replace('_', '-')}"
+    if isinstance(otherwise, bool):
+        group.add_argument(flag, action="store_true", help=text)
+        return
+    said = f"{text}: {', '.join(names)}" if names else text
+    meta = "NAME" if names else "X" if isinstance(otherwise, float) else "N"
+    group.add_argument(flag, type=type(otherwise), default=otherwise, metavar=meta, help=f"{said}; default {otherwise}")
 
 
 def _add_points(commands: argparse._SubParsersAction[_Parser]) -> None:
@@ -252,24 +261,15 @@ def _rendered(given: argparse.Namespace) -> sf.Image:
         spp=given.spp,
         tolerance=given.tolerance,
         relmse=given.relmse,
-        confidence=given.confidence,
-        min_spp=given.min_spp,
-        max_spp=given.max_spp,
         seconds=given.seconds,
-        pattern=given.pattern,
-        pixel_filter=given.pixel_filter,
-        roulette=given.roulette,
         profile=given.profile,
-        stop=given.stop,
-        unbiased=given.unbiased,
-        seeds=given.seeds,
-        seed=given.seed,
         threads=given.threads,
         crop=given.crop,
         aovs=given.aov,
         checkpoint=given.checkpoint,
         checkpoint_seconds=given.checkpoint_seconds,
         progress=sys.stderr.isatty(),
+        **{name: getattr(given, name) for name in _plain_options()},
     )
 
 

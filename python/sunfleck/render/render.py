@@ -212,8 +212,10 @@ def render(
         "threads": count("threads", threads),
         "tile_size": integer("tile_size", tile_size, bits=32),
         "roulette": integer("roulette", roulette, bits=32),
-        "profile": flag("profile", profile),
         "aovs": aovs_of(aovs),
+    }
+    apart: dict[str, Any] = {  # what is no option of the library's table
+        "profile": flag("profile", profile),
         "mask": mask_of(mask),
         "checkpoint": None if checkpoint is None else given_path(checkpoint),
         "checkpoint_seconds": number("checkpoint_seconds", checkpoint_seconds),
@@ -221,13 +223,13 @@ def render(
     }
     if callable(progress):
         tell = progress
-        film = _core.render(scene._core, progress=lambda p: tell(p) if p.round_finished else None, **options)
+        film = _core.render(scene._core, options, progress=lambda p: tell(p) if p.round_finished else None, **apart)
         return _finished(film, scene)
     if not progress:
-        return _finished(_core.render(scene._core, progress=None, **options), scene)
+        return _finished(_core.render(scene._core, options, progress=None, **apart), scene)
     bar = Bar()
     try:
-        return _finished(_core.render(scene._core, progress=bar, **options), scene)
+        return _finished(_core.render(scene._core, options, progress=bar, **apart), scene)
     finally:
         bar.close()
 
