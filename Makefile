@@ -80,30 +80,30 @@ docs: packages-demo .venv/.docs
 	@echo "build/site/index.html"
 
 bench: packages-bench .venv/.test build/reference/penumbra_256.npy build/reference/cornell_256.npy
-	$(with_mitsuba) bench/render.py
-	$(venv) bench/startup.py
-	$(venv) bench/sampling.py
-	$(venv) bench/generators.py
-	$(venv) bench/quality.py
-	$(venv) bench/instances.py
-	$(venv) bench/which_pattern.py
+	$(with_mitsuba) bench/render_speed.py
+	$(venv) bench/package_startup.py
+	$(venv) bench/points_rate.py
+	$(venv) bench/rng_rate.py
+	$(venv) bench/quality_chart.py
+	$(venv) bench/render_instances.py
+	$(venv) bench/points_which_pattern.py
 
 # Some ten minutes; results add up in build/peers/results.json, and `render_peers.py report` shows them.
 peers = build/reference/penumbra_256.npy build/reference/defocus_256.npy build/reference/cornell_256.npy
 bench-peers: packages-bench .venv/.test $(MITSUBA_PYTHON) build/cycles/bin/python build/luxcore/bin/python $(peers)
 	for scene in penumbra defocus cornell; do \
-	    $(with_llvm) $(venv) bench/render_peers.py measure $$scene && \
-	    $(with_llvm) $(venv) bench/render_peers.py start $$scene || exit 1; \
+	    $(with_llvm) $(venv) bench/peers_render.py measure $$scene && \
+	    $(with_llvm) $(venv) bench/peers_render.py start $$scene || exit 1; \
 	done
-	$(venv) bench/render_peers.py report
-	$(venv) bench/scaling.py threads
-	$(venv) bench/scaling.py memory
+	$(venv) bench/peers_render.py report
+	$(venv) bench/render_scaling.py threads
+	$(venv) bench/render_scaling.py memory
 
 # Half a minute for the structure, then some 15 minutes of two processors; build/battery/ keeps what was run.
 battery: packages-demo .venv/.test
 	@scripts/install-packages.sh dieharder
-	$(venv) bench/structure.py
-	$(venv) bench/battery.py
+	$(venv) bench/rng_structure.py
+	$(venv) bench/rng_battery.py
 
 gallery: packages-demo .venv/.test
 	$(venv) scripts/make-gallery.py
@@ -169,4 +169,4 @@ build/luxcore/bin/python:
 	build/luxcore/bin/python -m pip install -q pyluxcore numpy || echo "note: pyluxcore does not install here; LuxCore is left out" >&2
 
 build/reference/%_256.npy: | packages-bench .venv/.demo $(MITSUBA_PYTHON)
-	$(with_mitsuba) bench/reference.py $*
+	$(with_mitsuba) bench/peers_reference.py $*

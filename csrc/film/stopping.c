@@ -13,7 +13,7 @@
 #define FIRST_REPLICATES 128u /* a block for each of eight */
 
 /* What the averaged variance is multiplied by: pixels whose estimate came out low are the ones
- * that stop. Measured, bench/coverage.py: 1.0 leaves 92 % coverage on the Cornell box, 1.38 95 %. */
+ * that stop. Measured, bench/render_coverage.py: 1.0 leaves 92 % coverage on the Cornell box, 1.38 95 %. */
 #define SAFETY 1.38
 
 #define RELMSE_FLOOR 0.01 /* in the denominator of relMSE */

@@ -11,7 +11,7 @@
 #include "scene/scene_internal.h"
 
 /* From so many pieces on the tree has the lower error per second; see docs/scene.md, which has the
- * figures, and bench/many_lights.py, which measures them. */
+ * figures, and bench/render_many_lights.py, which measures them. */
 #define LEAST_PIECES 8
 #define MOST_PIECES ((size_t)1 << 31)
 

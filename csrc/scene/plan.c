@@ -8,7 +8,7 @@
 #include "scene/scene_internal.h"
 
 /* The share of all directions that an environment's light has to come from for the last surface
- * ray to lower its error by more than the time it takes: bench/surface_ray.py. */
+ * ray to lower its error by more than the time it takes: bench/render_surface_ray.py. */
 #define WIDE (1.0 / 32)
 
 const char *sf_stage_name(sf_stage stage) {

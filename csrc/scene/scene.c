@@ -380,7 +380,7 @@ static float normal_scale(const sf_scene_info *info) {
 
 /* Up to so many primitives surface rays are sorted, and their packets traced as coherent. Up to 60 triangles whole
  * renders take 0.73 to 0.92 of the time so; with 66 to 140, 0.88 to 1.06; from 300 on up to 1.7 where they are of
- * like size, as large triangles that most rays meet cost the least (bench/few.py). In fog it does not pay. */
+ * like size, as large triangles that most rays meet cost the least (bench/render_sort_threshold.py). In fog it does not pay. */
 #define FEW 64
 
 static void set_packing(sf_scene *scene) {

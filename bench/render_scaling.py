@@ -3,8 +3,8 @@
 
 """How a render scales: time over threads, memory over the image's and the scene's size.
 
-    scaling.py threads      penumbra and cornell, 64 samples a pixel, 256 x 256, on 1, 2, 4, … threads
-    scaling.py memory       the greatest resident memory of an 8K image, and of 10 million triangles
+    render_scaling.py threads      penumbra and cornell, 64 samples a pixel, 256 x 256, on 1, 2, 4, … threads
+    render_scaling.py memory       the greatest resident memory of an 8K image, and of 10 million triangles
 
 Thread counts take turns within a run; ratios are of one run. Each case of memory runs in a process
 of its own, whose peak includes the interpreter, NumPy, the scene's arrays and the picture.

@@ -3,9 +3,9 @@
 
 """Seconds to a stated relMSE, beside Mitsuba, Cycles and LuxCore, 256 x 256, on the same arrays.
 
-    render_peers.py measure SCENE [--peers ...] [--limit S]    adds runs to build/peers/results.json
-    render_peers.py start SCENE                                from process start to file written
-    render_peers.py report                                     tables of all that is there
+    peers_render.py measure SCENE [--peers ...] [--limit S]    adds runs to build/peers/results.json
+    peers_render.py start SCENE                                from process start to file written
+    peers_render.py report                                     tables of all that is there
 
 A run renders every configuration in turn, at growing sample counts (or falling tolerances), until
 its relMSE is below the least target or a render takes longer than --cap; each renderer lives in a
@@ -13,7 +13,7 @@ process of its own with its scene built and its kernels warm. The time to a targ
 in the logarithms of time and relMSE between the two renders around it, run by run; what is stated
 are medians over runs, and ratios of pairs in the same run.
 
-relMSE is mean((x - r)^2 / (r^2 + 0.01)) against the references that reference.py made; their own
+relMSE is mean((x - r)^2 / (r^2 + 0.01)) against the references that peers_reference.py made; their own
 error is part of it.
 """
 
@@ -87,7 +87,7 @@ def write_arrays(name: str) -> Path:
 
 def command(who: str, scene: Path) -> list[str]:
     python = sys.executable if who == "sunfleck" else str(ROOT / f"build/{who}/bin/python")
-    return [python, str(ROOT / "bench/peers.py"), who, str(scene)]
+    return [python, str(ROOT / "bench/peers_worker.py"), who, str(scene)]
 
 
 def environment(who: str) -> dict[str, str]:

@@ -109,7 +109,7 @@ def table(seeds: list[int], failed_below: float) -> str:
 
 
 def main() -> None:
-    begin, end = "<!-- begin: bench/structure.py -->", "<!-- end -->"
+    begin, end = "<!-- begin: bench/rng_structure.py -->", "<!-- end -->"
     head, rest = PAGE.read_text().split(begin)
     PAGE.write_text(f"{head}{begin}\n{table([12345], 1e-6)}\n\nSeed 12345.\n{end}{rest.split(end, 1)[1]}")
 

@@ -3,7 +3,7 @@
 
 """Up to how many primitives it pays to sort surface rays, and to trace their packets as coherent.
 
-    few.py [--rounds N]
+    render_sort_threshold.py [--rounds N]
 
 Two builds, in build/few/: one sorts in all scenes, one in none (FEW of csrc/scene/scene.c). Each renders
 the Cornell box with walls left out, boxes or balls added, or all walls and boxes split, and the

@@ -3,7 +3,7 @@
 
 """Where the renderer's time goes, stage by stage, on every built-in scene: nanoseconds of a thread by the path.
 
-    stages.py [--spp N] [--runs N]
+    render_stage_times.py [--spp N] [--runs N]
 
 "rays" is the floor: the three kinds of rays at the rates that Embree has on that scene, with the packing
 of packets of 16. What a render takes beyond it is ours. Medians over runs, with the least and the

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The Sunfleck developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""One renderer at work for render_peers.py, in a process and an environment of its own.
+"""One renderer at work for peers_render.py, in a process and an environment of its own.
 
-    peers.py WHO SCENE.npz                    reads requests, a JSON object a line, from standard input
-    peers.py WHO SCENE.npz --spp N -o FILE    renders once into an EXR, to be timed from outside
+    peers_worker.py WHO SCENE.npz                    reads requests, a JSON object a line, from standard input
+    peers_worker.py WHO SCENE.npz --spp N -o FILE    renders once into an EXR, to be timed from outside
 
-WHO is sunfleck, mitsuba, cycles or luxcore; SCENE.npz holds the arrays that render_peers.py wrote.
+WHO is sunfleck, mitsuba, cycles or luxcore; SCENE.npz holds the arrays that peers_render.py wrote.
 A request is {"mode", "value", "seed"}; the answer, a line that begins with @, tells the seconds of
 the render call alone, the samples taken, and the file that holds the picture.
 """
@@ -29,7 +29,7 @@ SIZE = 256
 
 
 def load_arrays(path: Path) -> SimpleNamespace:
-    """The scene as render_peers.py wrote it, with the names that sf.Scene has."""
+    """The scene as peers_render.py wrote it, with the names that sf.Scene has."""
     stored = np.load(path)
     given = json.loads(str(stored["description"]))
     meshes = [
@@ -87,7 +87,7 @@ class Mitsuba:
     MOST = 4096
 
     def __init__(self, scene: SimpleNamespace) -> None:
-        import reference
+        import peers_reference as reference
 
         variant = reference.choose_variant()
         if not variant.startswith("llvm"):

@@ -3,13 +3,13 @@
 
 """Rate against quality, charted: patterns by discrepancy, generators by the battery's failures.
 
-    python bench/quality.py            # writes docs/images/quality.png and prints the numbers
+    python bench/quality_chart.py            # writes docs/images/quality.png and prints the numbers
 
 Patterns: nanoseconds a value of a float32 fill of 2^18 x 2 (the nearest count that the pattern
 takes), one thread, median of 9; against the centered discrepancy (Hickernell 1998; the root of
 the mean square over 8 seeds) of 1,024 points in two dimensions, or the nearest count below.
 Generators: nanoseconds a float64 and failed tests of dieharder, read from the table that
-battery.py keeps in docs/generators.md.
+rng_battery.py keeps in docs/generators.md.
 """
 
 from __future__ import annotations

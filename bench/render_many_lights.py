@@ -9,7 +9,7 @@ one flat panel. Error: relMSE over the pixels in which no lamp is seen (the edge
 noise for both), against a reference of 64 times the samples. Time: of renders alternately with both, in
 one process.
 
-    python bench/many_lights.py [--seeds 5] [--counts 2 8 32] [--layouts spread panel]
+    python bench/render_many_lights.py [--seeds 5] [--counts 2 8 32] [--layouts spread panel]
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@
 What is compared takes turns, so that both see the same machine; a ratio is the median of the
 turns' ratios. One thread unless said.
 
-    python bench/sampling.py [memory] [cache] [patterns] [scipy] [threads] [table]     # all without a name
+    python bench/points_rate.py [memory] [cache] [patterns] [scipy] [threads] [table]     # all without a name
 """
 
 from __future__ import annotations

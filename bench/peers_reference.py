@@ -128,7 +128,7 @@ def main() -> None:
     parser.add_argument("--passes", type=int, help=f"of {PASS_SPP} samples a pixel each, even (default by scene)")
     parser.add_argument("-o", "--directory", type=Path, default=Path("build/reference"))
     args = parser.parse_args()
-    import sunfleck as sf  # peers.py builds scenes where this package is not
+    import sunfleck as sf  # peers_worker.py builds scenes where this package is not
 
     passes = args.passes or PASSES[args.name]
     if passes < 2 or passes % 2:

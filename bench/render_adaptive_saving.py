@@ -14,8 +14,8 @@ import argparse
 import time
 
 import numpy as np
-from coverage import SIZE, TOLERANCES, Array, level_of, truth_of
 from measure import describe_build, describe_machine
+from render_coverage import SIZE, TOLERANCES, Array, level_of, truth_of
 
 import sunfleck as sf
 

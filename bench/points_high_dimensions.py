@@ -3,7 +3,7 @@
 
 """The figures and tables of docs/high-dimensional-jittering.md.
 
-    python bench/high_dimensions.py [--quick] [-o docs/images]
+    python bench/points_high_dimensions.py [--quick] [-o docs/images]
 
 Errors of integrands with known answers in 10 and 100 dimensions, by pattern and count; what a pair
 of dimensions gets of each pattern; and pixel and lens jitter in step. No figure here is timed, and

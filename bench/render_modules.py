@@ -3,7 +3,7 @@
 
 """Whether penumbra pays for what it does not use: its time with all modules, over that of a build without them.
 
-    modules.py [--rounds N]
+    render_modules.py [--rounds N]
 
 The second build, in build/modules/, is a copy of the source in which every kernel file of what penumbra
 has no use for (fog, sky, round shapes, materials, lights by solid angle, the light tree, AOVs) holds

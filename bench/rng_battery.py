@@ -22,8 +22,8 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import BinaryIO
 
 import numpy as np
-from generators import nanoseconds
 from measure import ROOT, describe_machine
+from rng_rate import nanoseconds
 
 import sunfleck as sf
 
@@ -132,7 +132,7 @@ def main() -> None:
     with ThreadPoolExecutor(args.jobs) as pool:
         for _ in pool.map(lambda pair: results_of(*pair), itertools.product((*sf.RNGS, CONTROL), args.seeds)):
             pass
-    begin, end = "<!-- begin: bench/battery.py -->", "<!-- end -->"
+    begin, end = "<!-- begin: bench/rng_battery.py -->", "<!-- end -->"
     caption = f"dieharder {version()}, seeds {', '.join(map(str, args.seeds))}; rates on {machine}."
     page = PAGE.read_text()
     head, rest = page.split(begin)

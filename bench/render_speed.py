@@ -3,7 +3,7 @@
 
 """Speed and accuracy of fixed-count renders of penumbra and cornell, 256 x 256.
 
-Accuracy is relMSE = mean((x - r)^2 / (r^2 + 0.01)) against the references that reference.py
+Accuracy is relMSE = mean((x - r)^2 / (r^2 + 0.01)) against the references that peers_reference.py
 made; it is printed beside every speed. Where Mitsuba can be imported, it renders the same arrays
 in turn with us, and the ratio of each pair of runs is given too: the machine is the same for
 both, whatever else it does.
@@ -22,7 +22,7 @@ from measure import ROOT, describe_build, describe_machine, state
 import sunfleck as sf
 
 try:
-    import reference as peer
+    import peers_reference as peer
 except ImportError:
     peer = None  # type: ignore[assignment]
 

@@ -17,7 +17,7 @@ bias        mean over seeds of the picture's mean against the truth, in standard
 "half-buffer", the usual rule of renderers, is replayed: z times half the difference between the means of
 two halves of the samples, its square averaged over 3 x 3 pixels, decides at the same looks.
 
-The truth is a reference that reference.py made with Mitsuba where build/reference holds one of
+The truth is a reference that peers_reference.py made with Mitsuba where build/reference holds one of
 this size, else a long render of our own with another seed. The oracle's variances are the
 squared errors of fixed-count renders, over the same seeds and 3 x 3 pixels.
 """

@@ -3,9 +3,9 @@
 
 """The tables of docs/which-pattern.md: errors of every pattern at equal samples and at equal time.
 
-    python bench/which_pattern.py times            # the timed part alone, to build/which_pattern.json
-    python bench/which_pattern.py errors [--quick] # the tables, with the times that were kept
-    python bench/which_pattern.py                  # both
+    python bench/points_which_pattern.py times            # the timed part alone, to build/which_pattern.json
+    python bench/points_which_pattern.py errors [--quick] # the tables, with the times that were kept
+    python bench/points_which_pattern.py                  # both
 
 Integrands with known means, scaled to variance 1, in 2, 8 and 20 dimensions; the built-in scenes at
 64 x 64. Nothing but the part `times` is timed; seeds are 0, 1, 2, …
