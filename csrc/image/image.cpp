@@ -1,18 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Writes a film as EXR or PNG through OpenImageIO, in place of what was there or not at all. */
 #include "sunfleck/image.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
-#include <fcntl.h>
 #include <strings.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -21,6 +19,10 @@
 #include <new>
 #include <string>
 #include <vector>
+
+extern "C" {
+#include "base/atomic_file.h"
+}
 
 namespace {
 
@@ -46,58 +48,44 @@ sf_status report(sf_error *error, sf_status status, const char *message) noexcep
     return status;
 }
 
-// A new file beside `path`, that becomes `path` by commit() and is removed otherwise.
-class file_beside {
+// A stream into a new file, that takes the place of `path` by commit() and is removed otherwise.
+class replacing_file {
    public:
-    explicit file_beside(const std::string &path) : path_(path) {
-        const size_t slash = path.rfind('/');
-        const std::string folder = slash == std::string::npos ? std::string() : path.substr(0, slash + 1);
-        const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
-        uint64_t key = sf_hash64(static_cast<uint64_t>(now), static_cast<uint64_t>(getpid()));
-
-        // O_EXCL makes the name ours; two writers that draw the same one draw again.
-        int descriptor = -1;
-        do {
-            std::array<char, 40> name;
-            std::snprintf(name.data(), name.size(), ".sunfleck-%016llx", static_cast<unsigned long long>(key));
-            beside_ = folder + name.data();
-            descriptor = open(beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-            key = sf_mix64(key + 1);
-        } while (descriptor < 0 && errno == EEXIST);
-        if (descriptor < 0) fail_io(path_, std::strerror(errno));
-
-        stream_ = fdopen(descriptor, "wb");
-        if (!stream_) {
-            const int reason = errno;
-            close(descriptor);
-            unlink(beside_.c_str());
-            fail_io(path_, std::strerror(reason));
-        }
+    explicit replacing_file(const std::string &path) : path_(path) {
+        sf_error error;
+        if (sf_atomic_file_open(&file_, path.c_str(), &error)) throw failure{error.status, error.message};
+        const int descriptor = dup(file_.file);
+        if (descriptor >= 0) stream_ = fdopen(descriptor, "wb");
+        if (stream_) return;
+        const int reason = errno;
+        if (descriptor >= 0) close(descriptor);
+        sf_atomic_file_abandon(&file_);
+        fail_io(path_, std::strerror(reason));
     }
-    file_beside(const file_beside &) = delete;
-    file_beside &operator=(const file_beside &) = delete;
-    ~file_beside() {
+    replacing_file(const replacing_file &) = delete;
+    replacing_file &operator=(const replacing_file &) = delete;
+    ~replacing_file() {
         if (stream_) std::fclose(stream_);
-        if (!committed_) unlink(beside_.c_str());
+        sf_atomic_file_abandon(&file_);
     }
 
     FILE *stream() const { return stream_; }
 
-    // Renames only what has reached the disk: a full one may show as late as fsync or close.
+    // A full disk may show as late as fsync or close: only what has reached the disk takes the place.
     void commit() {
-        const bool flushed = std::fflush(stream_) == 0 && !std::ferror(stream_) && fsync(fileno(stream_)) == 0;
+        const bool flushed = std::fflush(stream_) == 0 && !std::ferror(stream_);
         const int flush_reason = errno;
         const bool closed = std::fclose(stream_) == 0;
         stream_ = nullptr;
-        if (!flushed) fail_io(path_, std::strerror(flush_reason));
-        if (!closed || std::rename(beside_.c_str(), path_.c_str()) != 0) fail_io(path_, std::strerror(errno));
-        committed_ = true;
+        if (!flushed || !closed) fail_io(path_, std::strerror(flushed ? errno : flush_reason));
+        sf_error error;
+        if (sf_atomic_file_commit(&file_, &error)) throw failure{error.status, error.message};
     }
 
    private:
-    std::string path_, beside_;
+    std::string path_;
+    sf_atomic_file file_;
     FILE *stream_ = nullptr;
-    bool committed_ = false;
 };
 
 // Rows first .. first + count - 1 of a channel as floats, into every `step`-th place of `out`.
@@ -158,6 +146,7 @@ OIIO::ImageSpec describe(const sf_film *film, const std::vector<sf_channel> &cha
         if (std::strcmp(channel.name, "A") == 0) spec.alpha_channel = static_cast<int>(spec.channelnames.size());
         spec.channelnames.emplace_back(channel.name);
     }
+    spec.attribute("Software", "sunfleck");
     spec.attribute("oiio:ColorSpace", kind == format::exr ? "Linear" : "sRGB");
     if (kind == format::exr) {
         spec.attribute("compression", "zip");
@@ -204,7 +193,7 @@ void write(const sf_film *film, const std::string &path) {
     block rows(size_t{block_rows} * sf_film_width(film) * channels.size(), kind);
 
     // The encoder comes last, so that it is gone before the stream that it writes through.
-    file_beside file(path);
+    replacing_file file(path);
     OIIO::Filesystem::IOFile proxy(file.stream(), OIIO::Filesystem::IOProxy::Write);
     const auto output = OIIO::ImageOutput::create(kind == format::exr ? "exr" : "png");
     if (!output) throw failure{SF_STATUS_BACKEND, "OpenImageIO: " + OIIO::geterror()};

@@ -266,6 +266,7 @@ void bind_estimate(nb::module_ &m) {
         .def("merge", &merge<sf_moments, sf_moments_merge>, "other"_a)
         .def_prop_ro("mean", &value_of<sf_moments, sf_moments_mean>)
         .def_prop_ro("variance", &value_of<sf_moments, sf_moments_variance>)
+        .def_prop_ro("sample_variance", &value_of<sf_moments, sf_moments_sample_variance>)
         .def_prop_ro("sample_deviation", &value_of<sf_moments, sf_moments_sample_deviation>)
         .def_prop_ro("standard_error", &value_of<sf_moments, sf_moments_standard_error>)
         .def(
@@ -307,6 +308,7 @@ void bind_estimate(nb::module_ &m) {
                          return vector3{now.mean[0] + none, now.mean[1] + none, now.mean[2] + none};
                      })
         .def_prop_ro("variance", &value_of<sf_vector_moments, sf_vector_moments_variance>)
+        .def_prop_ro("sample_variance", &value_of<sf_vector_moments, sf_vector_moments_sample_variance>)
         .def_prop_ro("sample_deviation", &value_of<sf_vector_moments, sf_vector_moments_sample_deviation>)
         .def_prop_ro("standard_error", &value_of<sf_vector_moments, sf_vector_moments_standard_error>)
         .def("state",

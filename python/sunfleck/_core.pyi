@@ -305,6 +305,9 @@ class Moments:
     def variance(self) -> float: ...
 
     @property
+    def sample_variance(self) -> float: ...
+
+    @property
     def sample_deviation(self) -> float: ...
 
     @property
@@ -340,6 +343,9 @@ class VectorMoments:
 
     @property
     def variance(self) -> float: ...
+
+    @property
+    def sample_variance(self) -> float: ...
 
     @property
     def sample_deviation(self) -> float: ...

@@ -48,6 +48,7 @@ static void test_moments_follow_the_lectures_definitions(void **state) {
     expect_near(sf_moments_mean(&m), 5.0, 1e-15);
     expect_near(sf_moments_variance(&m), 32.0 / 8.0, 1e-15);
     expect_near(sf_moments_sample_deviation(&m), sqrt(32.0 / 7.0), 1e-15);
+    expect_near(sf_moments_sample_variance(&m), 32.0 / 7.0, 1e-15);
     expect_near(sf_moments_standard_error(&m), sqrt(32.0 / 7.0 / 8.0), 1e-15);
 }
 

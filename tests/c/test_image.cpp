@@ -10,6 +10,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <csignal>
 #include <cstdarg>
@@ -199,6 +200,21 @@ void test_a_path_that_cannot_be_written_is_an_io_error(void **) {
     assert_true(list_folder() == std::set<std::string>{"b.exr"});
 }
 
+/* The link stays one, and what it points to is replaced. */
+void test_a_symbolic_link_is_followed(void **) {
+    const sf_film film = make_film(3, 2);
+    std::ofstream(folder + "/real.exr") << "what was there";
+    assert_int_equal(symlink("real.exr", (folder + "/link.exr").c_str()), 0);
+    assert_int_equal(sf_image_write(&film, (folder + "/link.exr").c_str(), nullptr), SF_STATUS_OK);
+    std::array<char, 16> target{};
+    assert_int_equal(readlink((folder + "/link.exr").c_str(), target.data(), target.size()), 8);
+    const auto input = OIIO::ImageInput::open(folder + "/real.exr");
+    assert_non_null(input.get());
+    assert_string_equal(input->spec().get_string_attribute("Software").c_str(), "sunfleck");
+    assert_string_equal(input->spec().get_string_attribute("oiio:ColorSpace").c_str(), "Linear");
+    assert_true((list_folder() == std::set<std::string>{"link.exr", "real.exr"}));
+}
+
 /* A limit on file size stands for a full disk: every write past it fails. */
 void test_a_full_disk_leaves_the_old_file_and_nothing_beside(void **) {
     const sf_film film = make_film(256, 256);
@@ -261,6 +277,7 @@ int main() {
         cmocka_unit_test_setup(test_png_holds_the_nearest_srgb_codes, empty_folder),
         cmocka_unit_test_setup(test_bad_arguments_are_refused_with_a_message, empty_folder),
         cmocka_unit_test_setup(test_a_path_that_cannot_be_written_is_an_io_error, empty_folder),
+        cmocka_unit_test_setup(test_a_symbolic_link_is_followed, empty_folder),
         cmocka_unit_test_setup(test_a_full_disk_leaves_the_old_file_and_nothing_beside, empty_folder),
         cmocka_unit_test_setup(test_failing_allocations_become_a_status, empty_folder),
     };

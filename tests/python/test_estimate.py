@@ -29,6 +29,7 @@ def test_moments_are_numpys(dtype: str) -> None:
     assert m.mean == pytest.approx(exact.mean(), rel=1e-14)
     assert m.variance == pytest.approx(exact.var(), rel=1e-13)
     assert m.sample_deviation == pytest.approx(exact.std(ddof=1), rel=1e-13)
+    assert m.sample_variance == pytest.approx(exact.var(ddof=1), rel=1e-13)
     assert m.standard_error == pytest.approx(stats.sem(exact), rel=1e-13)
 
 

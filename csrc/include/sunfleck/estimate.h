@@ -94,6 +94,10 @@ static inline double sf_moments_mean(const sf_moments *m) { return m->count ? m-
 static inline double sf_moments_variance(const sf_moments *m) {
     return m->count ? m->m2 / (double)m->count : (double)NAN;
 }
+/* The unbiased one of independent samples: the sum of squares over N - 1; infinite below two. */
+static inline double sf_moments_sample_variance(const sf_moments *m) {
+    return m->count > 1 ? m->m2 / ((double)m->count - 1.0) : (double)INFINITY;
+}
 static inline double sf_moments_sample_deviation(const sf_moments *m) {
     return m->count > 1 ? sqrt(m->m2 / ((double)m->count - 1.0)) : (double)INFINITY;
 }
@@ -145,6 +149,10 @@ static inline void sf_vector_moments_merge(sf_vector_moments *m, const sf_vector
 
 static inline double sf_vector_moments_variance(const sf_vector_moments *m) {
     return m->count ? m->m2 / (double)m->count : (double)NAN;
+}
+/* The unbiased one of independent samples: the sum of squares over N - 1; infinite below two. */
+static inline double sf_vector_moments_sample_variance(const sf_vector_moments *m) {
+    return m->count > 1 ? m->m2 / ((double)m->count - 1.0) : (double)INFINITY;
 }
 static inline double sf_vector_moments_sample_deviation(const sf_vector_moments *m) {
     return m->count > 1 ? sqrt(m->m2 / ((double)m->count - 1.0)) : (double)INFINITY;

@@ -43,8 +43,16 @@ class _Running(Generic[_Core]):
         return self._core.variance
 
     @property
+    def sample_variance(self) -> float:
+        """The unbiased estimate of the variance that independent samples come from, sum of squared deviations / (N - 1).
+
+        Infinite below two samples. ``standard_error`` is the square root of this over N.
+        """
+        return self._core.sample_variance
+
+    @property
     def sample_deviation(self) -> float:
-        """sqrt(sum of squared deviations / (N - 1)); infinite below two samples."""
+        """The square root of ``sample_variance``; infinite below two samples."""
         return self._core.sample_deviation
 
     @property
@@ -289,6 +297,12 @@ class ChannelMoments(Accumulator):
     def variance(self) -> tuple[float, float, float]:
         """By channel, sum of squared deviations / N; NaN without a sample."""
         r, g, b = (m.variance for m in self.channels)
+        return r, g, b
+
+    @property
+    def sample_variance(self) -> tuple[float, float, float]:
+        """By channel, sum of squared deviations / (N - 1); infinite below two samples."""
+        r, g, b = (m.sample_variance for m in self.channels)
         return r, g, b
 
     @property

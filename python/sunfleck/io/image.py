@@ -107,9 +107,9 @@ def _write(path: FilePath, pixels: NDArray[Any], names: Sequence[str], attribute
     spec = oiio.ImageSpec(width, height, count, oiio.TypeDesc(str(pixels.dtype).replace("float32", "float")))
     spec.channelnames = tuple(names)
     spec.attribute("Software", "sunfleck")
-    if pixels.dtype == np.uint8:
-        spec.attribute("oiio:ColorSpace", "sRGB")
-    else:
+    spec.alpha_channel = list(names).index("A") if "A" in names else -1
+    spec.attribute("oiio:ColorSpace", "sRGB" if pixels.dtype == np.uint8 else "Linear")
+    if pixels.dtype != np.uint8:
         spec.attribute("compression", "zip")
     for name, text in attributes.items():
         spec.attribute(f"sunfleck:{name}", text)
