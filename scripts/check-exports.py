@@ -4,7 +4,7 @@
 
 """Fails where shared libraries export another set of symbols than the functions that the public headers declare.
 
-    check-exports.py LIBRARY …     the shared libraries of one build: core alone, or with render and image
+check-exports.py LIBRARY …     the shared libraries of one build: core alone, or with render and image
 """
 
 import re

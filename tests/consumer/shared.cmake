@@ -17,7 +17,7 @@ function(run)
 endfunction()
 
 run(${CMAKE_COMMAND} -S ${source} -B ${work}/build -G ${generator} -D CMAKE_BUILD_TYPE=${config} -D BUILD_SHARED_LIBS=ON
-    -D SUNFLECK_BUILD_IMAGE=${image} -D SUNFLECK_BUILD_TESTS=OFF -D CMAKE_INSTALL_PREFIX=${prefix} -D embree_DIR=${embree_DIR})
+    -D SUNFLECK_BUILD_IMAGE=${image} -D SUNFLECK_BUILD_TESTS=OFF -D SUNFLECK_OPTIMIZE=-O1 -D CMAKE_INSTALL_PREFIX=${prefix} -D embree_DIR=${embree_DIR})
 run(${CMAKE_COMMAND} --build ${work}/build --config ${config})
 file(GLOB libraries ${work}/build/csrc/libsunfleck_*.so)
 list(LENGTH libraries count)

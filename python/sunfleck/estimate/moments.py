@@ -44,7 +44,7 @@ class _Running(Generic[_Core]):
 
     @property
     def sample_variance(self) -> float:
-        """The unbiased estimate of the variance that independent samples come from, sum of squared deviations / (N - 1).
+        """Unbiased for the variance that independent samples come from: sum of squared deviations / (N - 1).
 
         Infinite below two samples. ``standard_error`` is the square root of this over N.
         """
