@@ -13,6 +13,8 @@
 
 #include <array>
 #include <mutex>
+#include <string>
+#include <vector>
 
 #include "away.h"
 #include "interrupt.h"
@@ -124,6 +126,24 @@ nb::typed<nb::dict, nb::str, nb::str> listed(const char *(*name)(Enum), const ch
     for (int k = 0; name(static_cast<Enum>(k)); ++k)
         all[name(static_cast<Enum>(k))] = description(static_cast<Enum>(k));
     return all;
+}
+
+// The value of an enumeration whose name is `name`, among those that name_of lists until it has no further; those that
+// `allowed` is false of are found too, for C to refuse, but not offered.
+template <class NameOf, class Allowed>
+int find_name(const char *what, const std::string &name, NameOf &&name_of, Allowed &&allowed) {
+    std::vector<std::string> offered;
+    for (int k = 0; const char *known = name_of(k); ++k) {
+        if (sf_name_matches(name.c_str(), known)) return k;
+        if (allowed(k)) offered.emplace_back(known);
+    }
+    std::string message = std::string(what) + " is '" + name + "'; choose one of ";
+    for (size_t k = 0; k < offered.size(); ++k) message += (k ? ", " : "") + offered[k];
+    throw nb::value_error(message.c_str());
+}
+template <class NameOf>
+int find_name(const char *what, const std::string &name, NameOf &&name_of) {
+    return find_name(what, name, name_of, [](int) { return true; });
 }
 
 void bind_rng(nb::module_ &m);

@@ -162,15 +162,8 @@ bool is_allowed(const sf_option &option, int k) {
     return std::strcmp(option.name, "pattern") != 0 || sf_render_takes_pattern(static_cast<sf_pattern>(k));
 }
 
-// The value of a choice whose name is `name`; what C names is what is allowed.
 int find(const sf_option &option, const std::string &name) {
-    std::string allowed;
-    for (int k = 0; const char *known = option.name_of(k); ++k) {
-        if (sf_name_matches(name.c_str(), known)) return k;
-        if (is_allowed(option, k)) allowed += (allowed.empty() ? "" : ", ") + std::string(known);
-    }
-    std::string message = std::string(option.name) + " is '" + name + "'; it must be one of " + allowed;
-    throw nb::value_error(message.c_str());
+    return find_name(option.name, name, option.name_of, [&](int k) { return is_allowed(option, k); });
 }
 
 uint32_t find_all(const sf_option &option, const std::vector<std::string> &names) {

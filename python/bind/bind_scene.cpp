@@ -309,13 +309,8 @@ void bind_scene(nb::module_ &m) {
         .def(
             "set_light_sampling",
             [](scene_handle &self, const std::string &name) {
-                int k = 0;
-                const char *known;
-                while ((known = sf_light_sampling_name(static_cast<sf_light_sampling>(k))) &&
-                       !sf_name_matches(name.c_str(), known))
-                    ++k;
-                if (!known)
-                    throw nb::value_error(("light_sampling is '" + name + "'; give both, light or surface").c_str());
+                int k = find_name("light_sampling", name,
+                                  [](int i) { return sf_light_sampling_name(static_cast<sf_light_sampling>(i)); });
                 call([&](sf_error *error) {
                     return sf_scene_set_light_sampling(self.scene, static_cast<sf_light_sampling>(k), error);
                 });
@@ -324,12 +319,8 @@ void bind_scene(nb::module_ &m) {
         .def(
             "set_light_choice",
             [](scene_handle &self, const std::string &name) {
-                int k = 0;
-                const char *known;
-                while ((known = sf_light_choice_name(static_cast<sf_light_choice>(k))) &&
-                       !sf_name_matches(name.c_str(), known))
-                    ++k;
-                if (!known) throw nb::value_error(("light_choice is '" + name + "'; give auto, power or tree").c_str());
+                int k = find_name("light_choice", name,
+                                  [](int i) { return sf_light_choice_name(static_cast<sf_light_choice>(i)); });
                 call([&](sf_error *error) {
                     return sf_scene_set_light_choice(self.scene, static_cast<sf_light_choice>(k), error);
                 });

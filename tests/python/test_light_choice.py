@@ -172,5 +172,5 @@ def test_the_choice_is_part_of_the_scene() -> None:
     scenes = [sf.Scene([FLOOR, *scattered(40)], ROOM, light_choice=c) for c in ("auto", "power", "tree")]
     assert len({scene.info.hash for scene in scenes}) == 3
     assert [scene.light_choice for scene in scenes] == ["auto", "power", "tree"]
-    with pytest.raises(ValueError, match="light_choice is 'best'; give auto, power or tree"):
+    with pytest.raises(ValueError, match="light_choice is 'best'; choose one of auto, power, tree"):
         sf.Scene([FLOOR], ROOM, light_choice="best")
