@@ -58,14 +58,6 @@ sf_halton_axis sf_halton_axis_make(uint32_t base, uint32_t dimension, sf_scrambl
     return axis;
 }
 
-uint32_t sf_halton_mix(uint32_t digit, uint32_t base, uint64_t key) {
-    uint32_t mask = base - 1;
-    for (int shift = 1; shift < 32; shift *= 2) mask |= mask >> shift;
-    do digit = sf_halton_mix_step(digit, mask, key);
-    while (digit >= base);
-    return digit;
-}
-
 static uint32_t permute_digit(const sf_halton_axis *axis, unsigned place, uint32_t digit) {
     uint64_t key = sf_hash64(axis->key, place);
     return sf_halton_affine(sf_halton_mix(digit, axis->base, sf_mix64(key)), axis->base, key) % axis->base;

@@ -68,8 +68,14 @@ static inline uint64_t sf_halton_second_part(const sf_halton_axis *axis, sf_halt
     return fraction + (tail.inexact || fraction * axis->block != tail.fraction);
 }
 
-/* A mix of 0 .. base - 1, for a key. */
-uint32_t sf_halton_mix(uint32_t digit, uint32_t base, uint64_t key);
+/* The mix of 0 .. base - 1 for a key, walked to its end. */
+static inline uint32_t sf_halton_mix(uint32_t digit, uint32_t base, uint64_t key) {
+    uint32_t mask = base - 1;
+    for (int shift = 1; shift < 32; shift *= 2) mask |= mask >> shift;
+    do digit = sf_halton_mix_step(digit, mask, key);
+    while (digit >= base);
+    return digit;
+}
 
 /* halton_owen.c: nested uniform scrambling, see halton_kernels.h. */
 sf_owen_node sf_halton_owen_root(const sf_halton_axis *axis);

@@ -111,8 +111,9 @@ static sf_status seed_lcg(sf_rng *rng, uint64_t seed, sf_error *error) {
     if (reason) {
         char m[24] = "2^64";
         if (p.modulus) snprintf(m, sizeof m, "%" PRIu64, p.modulus);
+        const char *name = rng->kind == SF_RNG_LCG32 ? sf_rng_lcg32.name : sf_rng_lcg64.name;
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "seed is %" PRIu64 "; %s with m = %s can't start from it: %s",
-                       seed, sf_rng_name(rng->kind), m, reason);
+                       seed, name, m, reason);
     }
     set_state(rng, seed);
     return SF_STATUS_OK;

@@ -19,9 +19,10 @@ SF_RNG_DRAW(combined, combined, uint64_t)
 static const uint64_t xorshift64_polynomial[1] = {UINT64_C(0x223240da3e40dc9)};
 
 static sf_status seed_xorshift64(sf_rng *rng, uint64_t seed, sf_error *error) {
+    const char *name = rng->kind == SF_RNG_XORSHIFT64 ? sf_rng_xorshift64.name : sf_rng_xorshift64_lrl.name;
     if (seed == 0)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "seed is 0; %s takes 1 .. 2^64 - 1 (state 0 would stay 0)",
-                       sf_rng_name(rng->kind));
+                       name);
     rng->as.xorshift64.state = seed;
     return SF_STATUS_OK;
 }
