@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "base/error.h"
+#include "scene/scene_input.h"
 #include "scene/scene_internal.h"
 
 sf_fog sf_fog_default(void) { return (sf_fog){0, 0, 0}; }

@@ -9,7 +9,9 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "scene/scene_input.h"
 #include "scene/scene_internal.h"
+#include "scene/scene_mesh.h"
 
 #define CONDITION_LIMIT 3e5 /* Embree inverts transforms in single precision */
 #define LEAST_DETERMINANT 1e-36

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "scene/light_tree.h"
+#include "scene/scene_input.h"
 #include "scene/scene_internal.h"
 
 /* From so many pieces on the tree has the lower error per second; see docs/scene.md, which has the

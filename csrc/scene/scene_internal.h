@@ -249,29 +249,6 @@ static inline bool sf_scene_scatters(const sf_scene *scene) {
     return false;
 }
 
-/* scene.c, for the files that add to a scene. */
-sf_status sf_scene_refuse_committed(const sf_scene *scene, sf_error *error);
-sf_status sf_scene_check_color(const char *what, const float *color, float upper, sf_error *error);
-sf_status sf_scene_check_vector(const char *what, const float *v, sf_error *error);
-/* The list, with room for one more than the `count` of `bytes` each that it holds; NULL, the list as it was,
- * where there is no memory, which is SF_STATUS_OUT_OF_MEMORY. */
-void *sf_scene_grow(void *list, size_t *capacity, size_t count, size_t bytes, const char *what, sf_error *error);
-sf_status sf_scene_reserve_mesh(sf_scene *scene, sf_error *error);
-/* Counts of nothing, bounds that hold nothing. */
-sf_scene_info sf_scene_no_info(void);
-uint64_t sf_scene_hash(uint64_t hash, const void *bytes, size_t count);
-/* Checks a mesh and takes its bounds, hash and counts into the scene's. */
-sf_status sf_scene_survey_mesh(sf_scene_info *info, const sf_mesh *mesh, size_t number, sf_error *error);
-/* Copies arrays that can't be read in place. */
-sf_status sf_scene_keep_arrays(sf_scene_mesh *kept, sf_scene_info *info, sf_error *error);
-void sf_scene_free_arrays(sf_scene_mesh *kept);
-sf_status sf_scene_attach_mesh(RTCDevice device, RTCScene embree, const sf_mesh *mesh, uint32_t number,
-                               sf_error *error);
-/* Adds a mesh with the copies that it has, which are the scene's from here on. */
-sf_status sf_scene_take_mesh(sf_scene *scene, sf_scene_mesh *kept, sf_error *error);
-#define SF_LENGTH_LIMIT 1e12f   /* volumes, which Embree computes, stay finite */
-#define SF_RADIANCE_LIMIT 1e18f /* sums and products with weights stay finite */
-
 /* fog.c */
 static inline bool sf_foggy(const sf_scene *scene) { return scene->fog.scattering + scene->fog.absorption > 0; }
 sf_status sf_fog_check(const sf_scene *scene, sf_error *error);

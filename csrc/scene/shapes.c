@@ -7,7 +7,9 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "scene/scene_input.h"
 #include "scene/scene_internal.h"
+#include "scene/scene_mesh.h"
 
 #define LEAST_RADIUS 1e-15f /* squares stay floats */
 

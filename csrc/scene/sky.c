@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "scene/scene_input.h"
 #include "scene/scene_internal.h"
 #include "sunfleck/mapping.h"
 
