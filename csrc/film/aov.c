@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Sums and values of the AOVs, and the channels that show them. */
 #include "film/aov.h"
 
 #include <math.h>
@@ -108,7 +109,7 @@ void sf_aov_add(sf_aov_film *aovs, uint32_t count, const sf_block *blocks, const
 
 /* Of the mean of (R+G+B)/3: what the half-width is made of. */
 static float variance_of_mean(const sf_film *film, const sf_film_pixel *pixel, size_t i) {
-    double error = (double)film->half_width[i] / sf_stop_factor(film, &film->options, pixel);
+    double error = (double)film->half_width[i] / sf_stop_factor(film->factors, &film->options, pixel);
     return (float)(error * error);
 }
 

@@ -9,16 +9,10 @@
 #ifndef SUNFLECK_AOV_H
 #define SUNFLECK_AOV_H
 
-#include "film/block.h"
 #include "film/film_internal.h"
 
 /* Those that the first hit tells. */
 #define SF_AOVS_OF_HITS (1u << SF_AOV_ALBEDO | 1u << SF_AOV_NORMAL | 1u << SF_AOV_DEPTH)
-
-/* Sums over the samples of a block whose camera ray hit a surface. */
-typedef struct sf_hit_sums {
-    double albedo[3], normal[3], depth, hits;
-} sf_hit_sums;
 
 typedef struct sf_aov_film {
     uint32_t wanted; /* bit k: sf_aov k */

@@ -7,6 +7,8 @@
 
 #include <stdint.h>
 
+#include "sunfleck/estimate.h"
+
 #define SF_LANES 16  /* samples of a block, and rays of a packet */
 #define SF_BLOCKS 64 /* blocks of a batch: the pixels of a cell */
 
@@ -25,5 +27,16 @@ typedef struct sf_block {
     uint32_t pixel;  /* in the film */
     uint32_t number; /* among the pixel's blocks */
 } sf_block;
+
+/* What the 16 samples of a block come to: the lecture's vector mean and scalar sum of squares. */
+typedef struct sf_block_statistics {
+    sf_vector_moments moments; /* samples that are not finite are counted there, and left out */
+    uint32_t hits;             /* finite samples whose camera ray hit a surface */
+} sf_block_statistics;
+
+/* Sums over the samples of a block whose camera ray hit a surface. */
+typedef struct sf_hit_sums {
+    double albedo[3], normal[3], depth, hits;
+} sf_hit_sums;
 
 #endif

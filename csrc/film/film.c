@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* A film from its making to its end: its arrays, what they show of the pixels, and its description. */
 #include "film/film_internal.h"
 
 #include <inttypes.h>
@@ -13,10 +14,10 @@
 #include "base/page_cache.h"
 #include "base/platform.h"
 #include "film/aov.h"
+#include "film/film_looks.h"
 #include "film/mask.h"
 #include "film/option_table.h"
 #include "film/signed_filter.h"
-#include "film/stopping.h"
 #include "scene/scene_internal.h"
 
 #define OWN_CHANNELS 7
@@ -65,7 +66,7 @@ static void *take(char **memory, size_t bytes) {
 static sf_status allocate_arrays(sf_film *film, bool masked, sf_error *error) {
     size_t traced = film->stored, pixels = (size_t)film->crop_width * film->crop_height;
     size_t rows = film->crop_height * sizeof *film->rows;
-    size_t pools = sf_stop_pool_count(film) * sizeof *film->decay;
+    size_t pools = sf_film_pool_count(film) * sizeof *film->decay;
     size_t parts = film->negative_part > 0 ? traced * sizeof *film->signed_pixels : 0;
     film->memory_bytes =
         traced * sizeof *film->pixels + pools + rows + parts + pixels * (6 * 4 + 1 + masked) + 10 * SF_ALIGNMENT;
@@ -85,9 +86,8 @@ static sf_status allocate_arrays(sf_film *film, bool masked, sf_error *error) {
     return SF_STATUS_OK;
 }
 
-sf_status sf_film_create(const sf_render_options *options, bool masked, sf_film **out, sf_error *error) {
-    sf_film *film = calloc(1, sizeof *film);
-    if (!film) return sf_fail_memory(error, "a film", sizeof *film);
+/* The region that is traced: whole cells about the crop, within the frame. */
+static void lay_out(sf_film *film, const sf_render_options *options) {
     const uint32_t *crop = options->crop;
     film->crop_x0 = crop[0];
     film->crop_y0 = crop[1];
@@ -100,6 +100,10 @@ sf_status sf_film_create(const sf_render_options *options, bool masked, sf_film 
     film->cell_columns = (film->width + SF_CELL_SIZE - 1) / SF_CELL_SIZE;
     film->cell_rows = (film->height + SF_CELL_SIZE - 1) / SF_CELL_SIZE;
     film->stored = sf_film_cell_count(film) * SF_CELL_SIZE * SF_CELL_SIZE;
+}
+
+/* All but the caller's functions and paths. */
+static void keep_options(sf_film *film, const sf_render_options *options) {
     film->options = *options;
     film->options.progress = NULL;
     film->options.progress_user = NULL;
@@ -107,8 +111,16 @@ sf_status sf_film_create(const sf_render_options *options, bool masked, sf_film 
     film->options.notice_user = NULL;
     film->options.checkpoint_path = NULL;
     film->options.mask = NULL;
+}
+
+sf_status sf_film_create(const sf_render_options *options, bool masked, sf_film **out, sf_error *error) {
+    sf_film *film = calloc(1, sizeof *film);
+    if (!film) return sf_fail_memory(error, "a film", sizeof *film);
+    lay_out(film, options);
+    keep_options(film, options);
     film->negative_part = sf_filter_negative_part(options->pixel_filter);
-    sf_stop_set_factors(film, options);
+    sf_stop_set_factors(options, film->factors);
+    film->unseen = sf_stop_unseen(options);
     film->parts = malloc(sizeof *film->parts);
     film->part_count = 1;
     sf_status status =
@@ -117,7 +129,7 @@ sf_status sf_film_create(const sf_render_options *options, bool masked, sf_film 
     if (!status) sf_mask_apply(options, film);
     if (!status) {
         film->parts[0].seed = options->seed;
-        memcpy(film->parts[0].crop, crop, sizeof film->parts[0].crop);
+        memcpy(film->parts[0].crop, options->crop, sizeof film->parts[0].crop);
     } else {
         sf_film_destroy(film);
         film = NULL;
@@ -152,20 +164,6 @@ sf_status sf_film_identify(sf_film *film, const sf_scene *scene, sf_isa isa, sf_
     film->embree_version = (uint32_t)rtcGetDeviceProperty(scene->device, RTC_DEVICE_PROPERTY_VERSION);
     film->isa = isa;
     return SF_STATUS_OK;
-}
-
-void sf_film_add(sf_film_pixel *pixel, const sf_block_statistics *block) {
-    sf_vector_moments_merge(&pixel->moments, &block->moments);
-    pixel->hits += block->hits;
-}
-
-void sf_film_merge_pixel(sf_film_pixel *pixel, const sf_film_pixel *other) {
-    sf_vector_moments_merge(&pixel->moments, &other->moments);
-    pixel->hits += other->hits;
-}
-
-float sf_film_half_width(const sf_film_pixel *pixel, double z) {
-    return (float)(z * sf_vector_moments_standard_error(&pixel->moments) * sqrt(1.0 / 3.0));
 }
 
 void sf_film_sum_row(sf_film *film, uint32_t y) {
@@ -223,7 +221,7 @@ void sf_film_resolve_row(sf_film *film, uint32_t y) {
         row.nonfinite += pixel->moments.nonfinite;
         ++row.reasons[film->reason[i]];
         row.half_width += (double)film->half_width[i];
-        row.relmse += sf_stop_relative_error(film, pixel);
+        row.relmse += sf_film_relative_error(film, pixel);
         if (!((double)film->half_width[i] > row.worst)) continue;
         row.worst = (double)film->half_width[i];
         row.worst_x = x + film->crop_x0;

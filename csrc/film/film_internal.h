@@ -7,51 +7,8 @@
 
 #include <stdbool.h>
 
-#include "sunfleck/estimate.h"
+#include "film/pixel.h"
 #include "sunfleck/film.h"
-
-/* What the 16 samples of a block come to: the lecture's vector mean and scalar sum of squares. */
-typedef struct sf_block_statistics {
-    sf_vector_moments moments; /* samples that are not finite are counted there, and left out */
-    uint32_t hits;             /* finite samples whose camera ray hit a surface */
-} sf_block_statistics;
-
-#define SF_DYADIC_LEVELS 4
-
-/* What the rule "dyadic" keeps of a pixel; see stopping.h. Level 0 is the coarsest. */
-typedef struct sf_dyadic {
-    double unit;                      /* sum over the blocks of the unit at work */
-    double pending[SF_DYADIC_LEVELS]; /* means of left halves that wait for their right ones */
-    float squares[SF_DYADIC_LEVELS];  /* sums of ((A - B) / 2)^2 over the pairs of a level */
-} sf_dyadic;
-
-#define SF_REPLICATES 8 /* of the rule "replicates" */
-
-/* A pixel's running statistics: 120 bytes, whatever the sample count. */
-typedef struct sf_film_pixel {
-    sf_vector_moments moments;
-    union {
-        sf_dyadic dyadic;
-        double replicates[SF_REPLICATES - 1]; /* sums of block means; the last follows from the mean */
-        double planned;                       /* of a second set: how many samples it is to have */
-    } evidence;
-    uint32_t hits;
-    float half_width;
-    float variance; /* of the mean, at the last look */
-    uint8_t look;   /* that was at 16 * 2^look samples; 0: none yet */
-    uint8_t reason; /* sf_stop_reason, once it has stopped */
-    uint8_t doubt;  /* 1 where its variance at the last look was raised to a share of its neighbours' */
-} sf_film_pixel;
-
-/* How many samples the pixel took, those that were not finite too. */
-static inline uint64_t sf_film_taken(const sf_film_pixel *pixel) {
-    return pixel->moments.count + pixel->moments.nonfinite;
-}
-
-/* (R+G+B)/3 of a mean colour: what errors and levels are of. */
-static inline double sf_film_level_of(const sf_vector_moments *moments) {
-    return (moments->mean[0] + moments->mean[1] + moments->mean[2]) / 3;
-}
 
 /* Pixels of a cell are numbered in Morton order: the even bits of m are x, the odd bits y, so that
  * 16 in a row are a 4 x 4 square. */
@@ -87,7 +44,7 @@ struct sf_film {
     void *memory; /* that the arrays below lie in */
     size_t memory_bytes;
     sf_film_pixel *pixels; /* cell by cell, row by row in a cell: one that is sampled lies together */
-    float *decay;          /* of variance, by pooling cell; see stopping.h */
+    float *decay;          /* of variance, by pooling cell; see film_looks.h */
     sf_film_row *rows;     /* crop_height */
     float *color;          /* of the crop, 3 * crop_width * crop_height */
     float *alpha;
@@ -102,7 +59,7 @@ struct sf_film {
     uint64_t mask_hash;
     uint8_t untouched;                    /* the sf_stop_reason of pixels without a sample */
     double factors[SF_DYADIC_LEVELS + 1]; /* standard errors in a half-width, see sf_stop_factor */
-    double unseen;                        /* -log(1 - confidence); see stopping.c */
+    double unseen;                        /* -log(1 - confidence); see film_looks.c */
     sf_attribute *attributes;
     size_t attribute_count;
     sf_film_summary summary;
@@ -147,17 +104,6 @@ sf_status sf_film_create(const sf_render_options *options, bool masked, sf_film 
 static inline int sf_film_is_wanted(const sf_film *film, uint32_t x, uint32_t y) {
     return !film->mask || film->mask[(size_t)y * film->crop_width + x];
 }
-
-/* Adds a block to its pixel; blocks of a pixel are added in the order of their base. */
-void sf_film_add(sf_film_pixel *pixel, const sf_block_statistics *block);
-
-/* Adds what another film's pixel has seen, but for half-width and reason. */
-void sf_film_merge_pixel(sf_film_pixel *pixel, const sf_film_pixel *other);
-
-/* Half-width of the error of (R+G+B)/3 by the lecture's colour rule, for z standard errors:
- * z s / sqrt(3 N). With s^2 the sum of the channels' variances, var((R+G+B)/3) <= s^2 / 3, and
- * equal to it where the channels move together. Infinity for fewer than two samples. */
-float sf_film_half_width(const sf_film_pixel *pixel, double z);
 
 /* Sums (R+G+B)/3 over row y of the crop, for sf_film_level once all rows are. */
 void sf_film_sum_row(sf_film *film, uint32_t y);

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-/* When a pixel is done: at which sample counts a rule looks, and what it makes of the evidence.
+/* When a pixel is done: at which sample counts a rule looks, and what it makes of the evidence. A rule reads
+ * the statistics of pixels and returns a variance; where the pixels lie in a film is film_looks.h's.
  *
  * The rule "dyadic" needs no replicates. Let a pixel's first n = 2^m points of one scrambled
  * sequence have halves with means A and B. The halves are exchangeable, so that with d = (A-B)/2
@@ -25,21 +26,19 @@
 
 #include <stdbool.h>
 
-#include "film/block.h"
-#include "film/film_internal.h"
-
-#define SF_POOL_SIZE 16u /* pixels a side of the cells that decay is pooled over */
+#include "film/pixel.h"
+#include "sunfleck/film.h"
 
 /* Variance of a sample over the square of the mean from which on a pool's light is rare: that of an
  * event of probability 1/9. Measured, 32 samples a pixel: three quarters of keyhole's pools are beyond
  * 15, the largest of penumbra and defocus have 3.6, and 2 of 64 in cornell are beyond 8. */
 #define SF_HEAVY_TAIL 8
 
-/* The samples between two looks: units of 2^unit_shift blocks, paired up over `levels` levels. */
-typedef struct sf_lap {
+/* How the blocks between two looks are paired: units of 2^unit_shift blocks, over `levels` levels. */
+typedef struct sf_pairing {
     unsigned levels; /* 0: the rule keeps no differences */
     unsigned unit_shift;
-} sf_lap;
+} sf_pairing;
 
 /* A quarter more than n, in whole blocks: one at the least, 256 samples at the most. */
 static inline uint32_t sf_stop_quarter_more(uint32_t n) {
@@ -69,52 +68,60 @@ uint32_t sf_stop_next_look(const sf_render_options *options, uint32_t n);
 /* Whether the rule can tell a half-width from n samples of every pixel. */
 bool sf_stop_is_look(const sf_render_options *options, uint32_t n);
 
-/* The lap that ends with the look at `look` samples. */
-sf_lap sf_stop_lap(const sf_render_options *options, uint32_t look);
+/* How blocks are paired on the way to the look at `look` samples. */
+sf_pairing sf_stop_pairing(const sf_render_options *options, uint32_t look);
 
 /* Whether the pixel has the samples that its second set was to have. */
 static inline bool sf_stop_second_is_full(const sf_film_pixel *pixel) {
     return (double)sf_film_taken(pixel) >= pixel->evidence.planned;
 }
 
-/* Readies a pixel that has been looked at for the lap after. */
-void sf_dyadic_begin(sf_film_pixel *pixel);
+/* Readies what is kept of a pixel that has been looked at for the way to the next look; `mean` is that of
+ * (R+G+B)/3 so far. */
+void sf_dyadic_begin(sf_dyadic *dyadic, double mean);
 
 /* Adds the mean of (R+G+B)/3 over block number `block` of the pixel's. */
-void sf_dyadic_add(sf_dyadic *dyadic, double mean, uint32_t block, sf_lap lap);
+void sf_dyadic_add(sf_dyadic *dyadic, double mean, uint32_t block, sf_pairing pairing);
 
-/* How many cells the decay is pooled over in this film. */
-uint32_t sf_stop_pool_count(const sf_film *film);
+/* The variance of the mean that the differences tell, where it falls by the factor `decay` as samples double. */
+float sf_dyadic_variance(const sf_dyadic *dyadic, sf_pairing pairing, float decay);
 
-/* The pixels of a pooling cell: columns x0 .. x1 - 1, rows y0 .. y1 - 1 of the film. */
-typedef struct sf_pool_range {
-    uint32_t x0, y0, x1, y1;
-} sf_pool_range;
-sf_pool_range sf_stop_pool_range(const sf_film *film, uint32_t pool);
+/* What the averaged variance is multiplied by: pixels whose estimate came out low are the ones
+ * that stop. Measured, bench/render_coverage.py: 1.0 leaves 92 % coverage on the Cornell box, 1.38 95 %. */
+#define SF_DYADIC_SAFETY 1.38
 
-/* Looks at the pixels of one pooling cell that have `look` samples, of which there are some: fills their
- * `variance` and `look`. */
-void sf_stop_look_at_pool(sf_film *film, uint32_t pool, uint32_t look, sf_lap lap);
+/* What the pixels of a pool, over which decay is fitted, come to at a look; begins as zeros. */
+typedef struct sf_stop_pool {
+    double squares[SF_DYADIC_LEVELS]; /* over the pixels looked at */
+    double looked_at;
+    double variance, power; /* of a sample of (R+G+B)/3, and squared means: over all pixels */
+} sf_stop_pool;
+
+void sf_stop_pool_add(sf_stop_pool *pool, const sf_film_pixel *pixel, uint32_t look, sf_pairing pairing);
+
+/* The factor 2^a by which variance falls as samples double, from the pool's differences: 2 to 2^2.5. */
+float sf_stop_pool_decay(const sf_stop_pool *pool, sf_pairing pairing);
+
+/* The least variance that a pixel of the pool is believed to have: a share of their mean where light
+ * is rare. */
+float sf_stop_pool_least_variance(const sf_stop_pool *pool, sf_pairing pairing, float decay);
+
+/* The variance of a mean over eight replicates of equal size; `mean` is that of (R+G+B)/3. */
+double sf_stop_replicates_variance(const sf_film_pixel *pixel, double mean);
+
+/* The mean over channels of 1 / (r^2 + 0.01): what makes a variance an error of relMSE. */
+double sf_stop_relative_weight(const sf_film_pixel *pixel);
 
 /* Sets how many standard errors make half-widths: first the rule's where nothing tells how well the
  * variance is known; then, under dyadic, by the levels of differences at the last look. */
-void sf_stop_set_factors(sf_film *film, const sf_render_options *options);
+void sf_stop_set_factors(const sf_render_options *options, double factors[SF_DYADIC_LEVELS + 1]);
 
-/* The one that the pixel's half-width has. */
-double sf_stop_factor(const sf_film *film, const sf_render_options *options, const sf_film_pixel *pixel);
+/* The one of them that the pixel's half-width has. */
+double sf_stop_factor(const double factors[SF_DYADIC_LEVELS + 1], const sf_render_options *options,
+                      const sf_film_pixel *pixel);
 
-/* The pixel's part in relMSE: the variance of its mean of (R+G+B)/3 by the rule, with dyadic's safety, over the
- * square of each channel and 0.01, averaged. 0 where no sample differed; infinity below two samples. */
-double sf_stop_relative_error(const sf_film *film, const sf_film_pixel *pixel);
-
-/* The same, under dyadic pooled over the 3 x 3 pixels around (x, y) of the film, as half-widths are. */
-float sf_stop_relative_error_around(const sf_film *film, uint32_t x, uint32_t y);
-
-/* The factor by which variance falls as samples double, around pixel (x, y) of the film: 2 to 2^2.5. */
-float sf_stop_decay(const sf_film *film, uint32_t x, uint32_t y);
-
-/* The half-width of pixel (x, y) of the film by the rule. To be called when all pools have been
- * looked at. Infinity where fewer than two samples were taken. */
-float sf_stop_half_width(const sf_film *film, const sf_render_options *options, uint32_t x, uint32_t y);
+/* What the probability of an event lies below, times the samples that did not see it: -log(1 - confidence), 3 at
+ * 95 % (the rule of three). */
+double sf_stop_unseen(const sf_render_options *options);
 
 #endif

@@ -16,9 +16,9 @@
 #include "base/atomic_file.h"
 #include "base/container.h"
 #include "base/error.h"
+#include "film/film_looks.h"
 #include "film/mask.h"
 #include "film/render_options.h"
-#include "film/stopping.h"
 #include "render/checkpoint_fields.h"
 #include "render/checkpoint_identity.h"
 
@@ -136,7 +136,7 @@ static void mark_unfinished(sf_film *film, const uint64_t *open, bool second) {
             if (!sf_film_is_in(film, open, x, y)) continue;
             sf_film_pixel *pixel = sf_film_at(film, x, y);
             pixel->half_width = second ? sf_film_half_width(pixel, sf_normal_factor(film->options.confidence))
-                                       : sf_stop_half_width(film, &film->options, x, y);
+                                       : sf_film_half_width_at(film, x, y);
             pixel->reason = pixel->moments.nonfinite ? SF_STOP_REASON_SUSPICIOUS : SF_STOP_REASON_INTERRUPTED;
         }
 }

@@ -17,12 +17,12 @@
 
 #include "base/error.h"
 #include "film/aov.h"
+#include "film/film_looks.h"
 #include "film/mask.h"
 #include "film/signed_filter.h"
-#include "film/stopping.h"
 
 #define MOST_LOOK 27    /* 16 * 2^27 is SF_MAX_SPP */
-#define MOST_DECAY 5.7f /* 2^2.5 and a bit: see fit_decay in stopping.c */
+#define MOST_DECAY 5.7f /* 2^2.5 and a bit: see sf_stop_pool_decay */
 
 /* ---- ranges ---- */
 
@@ -132,7 +132,7 @@ static sf_array rows_of(const sf_checkpoint *c, holder of) {
         case OF_OPEN: return (sf_array){.rows = cells, .data = c->open, .stride = sizeof *c->open};
         case OF_ACTIVE: return (sf_array){.rows = cells, .data = c->active, .stride = sizeof *c->active};
         case OF_POOLS:
-            return (sf_array){.rows = sf_stop_pool_count(film), .data = film->decay, .stride = sizeof *film->decay};
+            return (sf_array){.rows = sf_film_pool_count(film), .data = film->decay, .stride = sizeof *film->decay};
         case OF_PIXELS: return (sf_array){.rows = film->stored, .data = film->pixels, .stride = sizeof *film->pixels};
         case OF_SUMS:
             return (sf_array){.rows = film->stored,

@@ -148,6 +148,6 @@ bool sf_rounds_begin_lap(sf_rounds *r) {
     else if (!chosen)
         r->look = sf_stop_next_look(&r->options, r->from);
     r->to = r->from;
-    r->lap = r->second ? (sf_lap){0, 0} : sf_stop_lap(&r->options, r->look);
+    r->pairing = r->second ? (sf_pairing){0, 0} : sf_stop_pairing(&r->options, r->look);
     return true;
 }

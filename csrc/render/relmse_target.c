@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "film/film_looks.h"
 #include "render/rounds.h"
 
 #define AIM 0.97         /* of the goal, so that estimates of later looks hardly ever pass it */
@@ -57,8 +58,8 @@ void sf_relmse_target_destroy(sf_relmse_target *goal) {
 void sf_relmse_target_take_note(sf_rounds *r, uint32_t x, uint32_t y) {
     size_t i = sf_film_index(r->film, x, y);
     const sf_film_pixel *pixel = r->film->pixels + i;
-    r->goal->notes[i] = (sf_relmse_target_note){.error = (float)sf_stop_relative_error(r->film, pixel),
-                                                .around = sf_stop_relative_error_around(r->film, x, y),
+    r->goal->notes[i] = (sf_relmse_target_note){.error = (float)sf_film_relative_error(r->film, pixel),
+                                                .around = sf_film_relative_error_around(r->film, x, y),
                                                 .taken = (uint32_t)sf_film_taken(pixel)};
 }
 
@@ -78,7 +79,7 @@ static uint32_t gain_bin(const sf_relmse_target_note *pixel, float fall) {
 }
 
 static float fall_in(const sf_rounds *r, uint32_t cell) {
-    return sf_stop_decay(r->film, sf_rounds_x(r, cell, 0), sf_rounds_y(r, cell, 0));
+    return sf_film_decay_at(r->film, sf_rounds_x(r, cell, 0), sf_rounds_y(r, cell, 0));
 }
 
 /* The middle of a bin. */

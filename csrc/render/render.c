@@ -147,7 +147,7 @@ static void adopt_checkpoint(sf_rounds *r, const sf_round_state *state, bool ext
         open_all(r);
         if (r->level_fixed) sf_rounds_set_tolerance(r);
     }
-    r->lap = r->second ? (sf_lap){0, 0} : sf_stop_lap(&r->options, r->look);
+    r->pairing = r->second ? (sf_pairing){0, 0} : sf_stop_pairing(&r->options, r->look);
     sf_rounds_list_tiles(r);
     r->progress.round = summary->rounds;
     r->workers[0].done = (r->region - sf_rounds_count_pixels(r, r->open)) * r->progress.pixels / r->region;

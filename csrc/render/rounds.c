@@ -4,6 +4,7 @@
 #include "render/rounds.h"
 
 #include "film/aov.h"
+#include "film/film_looks.h"
 
 #include <math.h>
 #include <string.h>
@@ -98,7 +99,7 @@ static void sample_round(sf_rounds *r) {
 /* ---- decisions ---- */
 
 static bool pool_is_active(const sf_rounds *r, uint32_t pool) {
-    sf_pool_range range = sf_stop_pool_range(r->film, pool);
+    sf_pool_range range = sf_film_pool_range(r->film, pool);
     for (uint32_t y = range.y0 / SF_CELL_SIZE; y * SF_CELL_SIZE < range.y1; ++y)
         for (uint32_t x = range.x0 / SF_CELL_SIZE; x * SF_CELL_SIZE < range.x1; ++x)
             if (r->active[(size_t)y * r->film->cell_columns + x]) return true;
@@ -109,7 +110,7 @@ static void look_at_pool(void *user, unsigned worker, size_t item) {
     (void)worker;
     sf_rounds *r = user;
     if (!pool_is_active(r, (uint32_t)item)) return;
-    sf_stop_look_at_pool(r->film, (uint32_t)item, r->look, r->lap);
+    sf_film_look_at_pool(r->film, (uint32_t)item, r->look, r->pairing);
 }
 
 /* Why a pixel that is not met is closed. */
@@ -144,7 +145,7 @@ static bool decide_pixel(sf_rounds *r, uint32_t x, uint32_t y, size_t state) {
     if (o->start + sf_film_taken(pixel) > r->to && state == SF_RUNNING)
         return false;                                                  /* decided here before, by an easier tolerance */
     if (sf_film_taken(pixel) == 0 && state != SF_RUNNING) return true; /* not a page of it is touched; see close_all */
-    pixel->half_width = sf_stop_half_width(r->film, o, x, y);
+    pixel->half_width = sf_film_half_width_at(r->film, x, y);
     bool met = !o->spp && summary->tolerance >= 0 && sf_film_taken(pixel) >= o->min_spp &&
                (double)pixel->half_width <= summary->tolerance;
     if (r->goal) { /* no pixel is met before the whole picture is */
@@ -206,8 +207,8 @@ static void fix_tolerance(sf_rounds *r) {
 /* Looks at the lap's pixels where the rule can, and closes those that are done. */
 static void decide(sf_rounds *r) {
     fix_tolerance(r);
-    if (r->lap.levels && r->to == r->look && sf_stop_is_look(&r->options, r->look))
-        sf_thread_pool_run(r->pool, sf_stop_pool_count(r->film), look_at_pool, sf_rounds_wake, r);
+    if (r->pairing.levels && r->to == r->look && sf_stop_is_look(&r->options, r->look))
+        sf_thread_pool_run(r->pool, sf_film_pool_count(r->film), look_at_pool, sf_rounds_wake, r);
     if (r->options.spp && r->to < sf_rounds_most(r))
         return; /* of a fixed count there is nothing to tell before its end */
     sf_thread_pool_run(r->pool, r->tile_count, decide_tile, sf_rounds_wake, r);

@@ -52,12 +52,12 @@ typedef struct sf_rounds {
     uint32_t tile_cells;       /* a side */
     uint32_t *tiles;           /* those with active pixels */
     size_t tile_count;
-    uint32_t from, to; /* the round's sample counts; equal between rounds */
-    uint32_t ahead;    /* after a pause or a resume pixels may have up to so many samples already */
-    uint64_t region;   /* pixels traced */
-    bool in_lap;       /* a lap has begun and not ended */
-    uint32_t look;     /* where the lap ends, unless the render does */
-    sf_lap lap;
+    uint32_t from, to;      /* the round's sample counts; equal between rounds */
+    uint32_t ahead;         /* after a pause or a resume pixels may have up to so many samples already */
+    uint64_t region;        /* pixels traced */
+    bool in_lap;            /* a lap has begun and not ended */
+    uint32_t look;          /* where the lap ends, unless the render does */
+    sf_pairing pairing;     /* of the lap's blocks */
     double target;          /* of a budget: half-widths beyond it are to be lowered */
     sf_relmse_target *goal; /* of the whole picture; NULL where there is none */
     uint64_t beyond;        /* pixels that the goal still wants more samples of */

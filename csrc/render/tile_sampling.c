@@ -3,30 +3,11 @@
 
 /* A round's samples: blocks of the cells' pixels gathered into batches, run, and added to the film. */
 
-#include "film/aov.h"
-#include "film/signed_filter.h"
+#include "film/film_blocks.h"
 #include "render/rounds.h"
 
 /* What tells the keys of a second set from the pilot's, and from replicates', which are 1 to 8. */
 #define SECOND_SET (UINT64_C(1) << 32)
-
-/* Adds the block to its pixel's statistics, and to what the stopping rule keeps. */
-static void add_block(sf_rounds *r, uint32_t i, sf_batch *batch) {
-    const sf_block *block = batch->blocks + i;
-    sf_block_statistics *statistics = batch->statistics + i;
-    sf_film_pixel *pixel = r->film->pixels + block->pixel;
-    bool lap_begins =
-        r->lap.levels && r->from && sf_film_taken(pixel) == r->from && sf_stop_is_look(&r->options, r->from);
-    if (lap_begins) sf_dyadic_begin(pixel);
-    if (r->film->signed_pixels)
-        sf_signed_add(r->film, block->pixel, statistics, batch->negative_moments + i);
-    else
-        sf_film_add(pixel, statistics);
-    double mean = sf_film_level_of(&statistics->moments);
-    if (r->lap.levels) sf_dyadic_add(&pixel->evidence.dyadic, mean, block->number, r->lap);
-    if (r->options.stop == SF_STOP_RULE_REPLICATES && !r->second && block->number % SF_REPLICATES < SF_REPLICATES - 1)
-        pixel->evidence.replicates[block->number % SF_REPLICATES] += mean;
-}
 
 /* Runs the blocks gathered so far and adds them to the film, in their order. */
 static void flush_batch(sf_rounds *r, sf_rounds_worker *worker) {
@@ -35,11 +16,11 @@ static void flush_batch(sf_rounds *r, sf_rounds_worker *worker) {
     sf_batch_run(batch, &r->context);
     sf_work_begin(&batch->clock, SF_WORK_FILM);
     size_t samples = 0;
-    for (uint32_t i = 0; i < batch->block_count; ++i) {
-        add_block(r, i, batch);
-        samples += sf_count_bits(batch->blocks[i].active);
-    }
-    if (r->film->aovs) sf_aov_add(r->film->aovs, batch->block_count, batch->blocks, batch->statistics, batch->hit_sums);
+    for (uint32_t i = 0; i < batch->block_count; ++i) samples += sf_count_bits(batch->blocks[i].active);
+    sf_film_round round = {.from = r->from, .pairing = r->pairing, .second = r->second};
+    sf_film_blocks blocks = {batch->block_count, batch->blocks, batch->statistics, batch->negative_moments,
+                             batch->hit_sums};
+    sf_film_add_blocks(r->film, &round, &blocks);
     batch->block_count = 0;
     sf_atomic_fetch_add(&worker->samples, samples);
     if (r->deadline > 0 && sf_seconds_now() >= r->deadline)

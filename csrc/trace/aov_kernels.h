@@ -7,7 +7,7 @@
 #define SUNFLECK_AOV_KERNELS_H
 
 #include "base/isa_dispatch.h"
-#include "film/aov.h"
+#include "film/block.h"
 #include "trace/batch.h"
 
 typedef struct sf_aov_kernels {

@@ -5,7 +5,6 @@
 
 #include "trace/batch.h"
 
-#include "film/aov.h"
 #include "trace/aov_kernels.h"
 #include "trace/camera_kernels.h"
 #include "trace/fog_kernels.h"

@@ -14,7 +14,7 @@
 #include <stdbool.h>
 
 #include "base/platform.h"
-#include "film/film_internal.h"
+#include "film/block.h"
 #include "scene/scene_internal.h"
 #include "sunfleck/film.h"
 #include "trace/sample_dimensions.h"

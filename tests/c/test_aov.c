@@ -5,6 +5,7 @@
  * bits however the work is divided. */
 #include "scenes.h"
 
+#include "film/aov.h"
 #include "trace/aov_kernels.h"
 
 #define ALL_AOVS ((1u << SF_AOV_COUNT) - 1)

@@ -6,6 +6,7 @@
 #include "scenes.h"
 
 #include "base/page_cache.h"
+#include "film/pixel.h"
 #include "trace/batch.h"
 #include "trace/gather_kernels.h"
 
