@@ -8,7 +8,8 @@
 #include <stdbool.h>
 
 #include "film/film_internal.h"
-#include "render/relmse_target.h"
+
+struct sf_relmse_target_note;
 
 /* Where the rounds are. */
 typedef struct sf_round_state {
@@ -25,10 +26,10 @@ typedef struct sf_round_state {
 } sf_round_state;
 
 typedef struct sf_checkpoint {
-    sf_film *film;                /* its accumulators, and the options and scene that it is of */
-    uint64_t *open;               /* by cell: pixels that are not done */
-    uint64_t *active;             /* of these, the lap's */
-    sf_relmse_target_note *notes; /* by pixel; NULL without a goal of the whole picture */
+    sf_film *film;                       /* its accumulators, and the options and scene that it is of */
+    uint64_t *open;                      /* by cell: pixels that are not done */
+    uint64_t *active;                    /* of these, the lap's */
+    struct sf_relmse_target_note *notes; /* by pixel; NULL without a goal of the whole picture */
     sf_round_state state;
 } sf_checkpoint;
 

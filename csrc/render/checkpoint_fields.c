@@ -20,6 +20,7 @@
 #include "film/film_looks.h"
 #include "film/mask.h"
 #include "film/signed_filter.h"
+#include "render/relmse_target.h"
 
 #define MOST_LOOK 27    /* 16 * 2^27 is SF_MAX_SPP */
 #define MOST_DECAY 5.7f /* 2^2.5 and a bit: see sf_stop_pool_decay */

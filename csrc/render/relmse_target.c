@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Selects pixels by what a sample of them gains for the relMSE of the whole picture. */
 #include "render/relmse_target.h"
 
 #include <math.h>
@@ -8,6 +9,7 @@
 
 #include "base/error.h"
 #include "film/film_looks.h"
+#include "render/progress.h"
 #include "render/rounds.h"
 
 #define AIM 0.97         /* of the goal, so that estimates of later looks hardly ever pass it */
@@ -31,21 +33,31 @@ struct sf_relmse_target {
     census *censuses;             /* by worker; the first becomes that of all */
     uint32_t threshold;           /* the bin of gains from which on pixels are brought on */
     bool reached;
+    double estimate; /* of relMSE */
+    uint64_t beyond; /* pixels that more samples are wanted of */
 };
 
-static size_t pixel_count(const sf_rounds *r) { return r->film->stored; }
-
-sf_status sf_relmse_target_prepare(sf_rounds *r, sf_error *error) {
-    if (!(r->options.relmse > 0)) return SF_STATUS_OK;
-    r->goal = calloc(1, sizeof *r->goal);
-    if (!r->goal) return sf_fail_memory(error, "a goal", sizeof *r->goal);
-    size_t bytes = pixel_count(r) * sizeof *r->goal->notes;
-    r->goal->notes = malloc(bytes);
-    if (!r->goal->notes) return sf_fail_memory(error, "the pixels' errors", bytes);
-    for (size_t i = 0; i < pixel_count(r); ++i) r->goal->notes[i] = (sf_relmse_target_note){INFINITY, INFINITY, 0};
-    bytes = r->options.threads * sizeof *r->goal->censuses;
-    r->goal->censuses = malloc(bytes);
-    return r->goal->censuses ? SF_STATUS_OK : sf_fail_memory(error, "the threads' sums of errors", bytes);
+sf_status sf_relmse_target_create(const sf_render_options *options, const sf_film *film, sf_relmse_target **out,
+                                  sf_error *error) {
+    *out = NULL;
+    if (!(options->relmse > 0)) return SF_STATUS_OK;
+    sf_relmse_target *goal = calloc(1, sizeof *goal);
+    if (!goal) return sf_fail_memory(error, "a goal", sizeof *goal);
+    size_t notes = film->stored * sizeof *goal->notes, sums = options->threads * sizeof *goal->censuses;
+    goal->notes = malloc(notes);
+    goal->censuses = malloc(sums);
+    sf_status status = SF_STATUS_OK;
+    if (!goal->notes)
+        status = sf_fail_memory(error, "the pixels' errors", notes);
+    else if (!goal->censuses)
+        status = sf_fail_memory(error, "the threads' sums of errors", sums);
+    for (size_t i = 0; !status && i < film->stored; ++i)
+        goal->notes[i] = (sf_relmse_target_note){INFINITY, INFINITY, 0};
+    if (status)
+        sf_relmse_target_destroy(goal);
+    else
+        *out = goal;
+    return status;
 }
 
 void sf_relmse_target_destroy(sf_relmse_target *goal) {
@@ -55,17 +67,29 @@ void sf_relmse_target_destroy(sf_relmse_target *goal) {
     free(goal);
 }
 
-void sf_relmse_target_take_note(sf_rounds *r, uint32_t x, uint32_t y) {
-    size_t i = sf_film_index(r->film, x, y);
-    const sf_film_pixel *pixel = r->film->pixels + i;
-    r->goal->notes[i] = (sf_relmse_target_note){.error = (float)sf_film_relative_error(r->film, pixel),
-                                                .around = sf_film_relative_error_around(r->film, x, y),
-                                                .taken = (uint32_t)sf_film_taken(pixel)};
+void sf_relmse_target_take_note(sf_relmse_target *goal, const sf_film *film, uint32_t x, uint32_t y) {
+    size_t i = sf_film_index(film, x, y);
+    const sf_film_pixel *pixel = film->pixels + i;
+    goal->notes[i] = (sf_relmse_target_note){.error = (float)sf_film_relative_error(film, pixel),
+                                             .around = sf_film_relative_error_around(film, x, y),
+                                             .taken = (uint32_t)sf_film_taken(pixel)};
 }
 
 sf_relmse_target_note *sf_relmse_target_notes(sf_relmse_target *goal) { return goal ? goal->notes : NULL; }
 
 bool sf_relmse_target_is_reached(const sf_relmse_target *goal) { return goal->reached; }
+
+double sf_relmse_target_estimate(const sf_relmse_target *goal) { return goal->estimate; }
+
+uint64_t sf_relmse_target_beyond(const sf_relmse_target *goal) { return goal->beyond; }
+
+/* A selection at work. */
+typedef struct selection {
+    const sf_rounds *r;
+    sf_relmse_target *goal;
+    uint64_t *active;
+    uint32_t from; /* pixels that have so many samples */
+} selection;
 
 /* ---- gains ---- */
 
@@ -100,13 +124,13 @@ static uint32_t fall_class(float fall) {
 /* Ends at the largest number, whatever the order. */
 static void add_error(uint64_t *sum, uint64_t error) { *sum = error > UINT64_MAX - *sum ? UINT64_MAX : *sum + error; }
 
-static void count_cell(const sf_rounds *r, census *c, uint32_t cell) {
+static void count_cell(const sf_rounds *r, const sf_relmse_target *goal, census *c, uint32_t cell) {
     float fall = fall_in(r, cell);
     uint64_t *errors = c->error[fall_class(fall)];
     for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m) {
         uint32_t x = sf_rounds_x(r, cell, m), y = sf_rounds_y(r, cell, m);
         if (x >= r->film->width || y >= r->film->height) continue;
-        const sf_relmse_target_note *pixel = r->goal->notes + sf_film_index(r->film, x, y);
+        const sf_relmse_target_note *pixel = goal->notes + sf_film_index(r->film, x, y);
         double part = (double)pixel->error / r->options.relmse * ONE;
         uint64_t error = sf_rounds_in_picture(r, x, y) ? (uint64_t)(part < MOST ? part : MOST) : 0;
         add_error(&c->whole, error);
@@ -119,9 +143,10 @@ static void count_cell(const sf_rounds *r, census *c, uint32_t cell) {
 }
 
 static void count_row(void *user, unsigned worker, size_t row) {
-    const sf_rounds *r = user;
+    const selection *s = user;
+    const sf_rounds *r = s->r;
     for (uint32_t x = 0; x < r->film->cell_columns; ++x)
-        count_cell(r, r->goal->censuses + worker, (uint32_t)row * r->film->cell_columns + x);
+        count_cell(r, s->goal, s->goal->censuses + worker, (uint32_t)row * r->film->cell_columns + x);
 }
 
 static void add_census(census *sum, const census *part) {
@@ -134,13 +159,14 @@ static void add_census(census *sum, const census *part) {
     }
 }
 
-static const census *take_census(sf_rounds *r) {
-    census *censuses = r->goal->censuses;
+static const census *take_census(selection *s) {
+    const sf_rounds *r = s->r;
+    census *censuses = s->goal->censuses;
     for (uint32_t i = 0; i < r->options.threads; ++i) {
         memset(censuses + i, 0, sizeof *censuses);
         memset(censuses[i].least, 0xff, sizeof censuses[i].least);
     }
-    sf_thread_pool_run(r->pool, r->film->cell_rows, count_row, sf_rounds_wake, r);
+    sf_rounds_run_phase(r, r->film->cell_rows, count_row, s);
     for (uint32_t i = 1; i < r->options.threads; ++i) add_census(censuses, censuses + i);
     return censuses;
 }
@@ -180,39 +206,39 @@ static uint32_t choose_threshold(const census *c, double aim) {
 /* ---- the choice ---- */
 
 static void choose_row(void *user, unsigned worker, size_t row) {
-    sf_rounds *r = user;
+    const selection *s = user;
+    const sf_rounds *r = s->r;
     (void)worker;
     for (uint32_t x = 0; x < r->film->cell_columns; ++x) {
         uint32_t cell = (uint32_t)row * r->film->cell_columns + x;
         float fall = fall_in(r, cell);
-        r->active[cell] = 0;
+        s->active[cell] = 0;
         for (uint32_t m = 0; m < SF_CELL_PIXELS; ++m) {
             if (!(r->open[cell] >> m & 1u)) continue;
             uint32_t u = sf_rounds_x(r, cell, m), v = sf_rounds_y(r, cell, m);
-            const sf_relmse_target_note *pixel = r->goal->notes + sf_film_index(r->film, u, v);
-            if (pixel->taken == r->from && gain_bin(pixel, fall) >= r->goal->threshold)
-                r->active[cell] |= UINT64_C(1) << m;
+            const sf_relmse_target_note *pixel = s->goal->notes + sf_film_index(r->film, u, v);
+            if (pixel->taken == s->from && gain_bin(pixel, fall) >= s->goal->threshold)
+                s->active[cell] |= UINT64_C(1) << m;
         }
     }
 }
 
-bool sf_relmse_target_choose(sf_rounds *r) {
-    const census *c = take_census(r);
-    double goal = (double)r->film->counted * ONE;
-    r->progress.relmse = (double)c->whole / goal * r->options.relmse;
-    r->goal->reached = c->whole <= r->film->counted * (UINT64_C(1) * ONE - 1); /* parts were rounded down */
-    if (r->goal->reached) return false;
-    r->goal->threshold = choose_threshold(c, AIM * goal);
-    uint32_t least = UINT32_MAX;
-    uint64_t beyond = 0;
-    for (uint32_t bin = r->goal->threshold; bin < GAINS; ++bin) {
-        least = c->least[bin] < least ? c->least[bin] : least;
-        beyond += c->count[bin];
+sf_lap sf_relmse_target_select(sf_relmse_target *goal, const sf_rounds *r, uint64_t *active) {
+    selection s = {.r = r, .goal = goal, .active = active, .from = UINT32_MAX};
+    sf_lap lap = {.target = r->target};
+    const census *c = take_census(&s);
+    double allowed = (double)r->film->counted * ONE;
+    goal->estimate = (double)c->whole / allowed * r->options.relmse;
+    goal->reached = c->whole <= r->film->counted * (UINT64_C(1) * ONE - 1); /* parts were rounded down */
+    if (goal->reached) return lap;
+    goal->threshold = choose_threshold(c, AIM * allowed);
+    goal->beyond = 0;
+    for (uint32_t bin = goal->threshold; bin < GAINS; ++bin) {
+        s.from = c->least[bin] < s.from ? c->least[bin] : s.from;
+        goal->beyond += c->count[bin];
     }
-    r->beyond = beyond;
-    if (!beyond) return false;
-    r->from = least;
-    r->look = sf_stop_next_look(&r->options, least);
-    sf_thread_pool_run(r->pool, r->film->cell_rows, choose_row, sf_rounds_wake, r);
-    return true;
+    if (!goal->beyond) return lap;
+    sf_rounds_run_phase(r, r->film->cell_rows, choose_row, &s);
+    return (sf_lap){
+        .begins = true, .from = s.from, .look = sf_stop_next_look(&r->options, s.from), .target = r->target};
 }

@@ -15,7 +15,8 @@
 #ifndef SUNFLECK_RELMSE_TARGET_H
 #define SUNFLECK_RELMSE_TARGET_H
 
-#include "film/film_internal.h"
+#include "render/lap.h"
+#include "sunfleck/film.h"
 
 struct sf_rounds;
 typedef struct sf_relmse_target sf_relmse_target;
@@ -27,22 +28,25 @@ typedef struct sf_relmse_target_note {
     uint32_t taken;
 } sf_relmse_target_note;
 
-/* Sets r->goal, where the options have one. */
-sf_status sf_relmse_target_prepare(struct sf_rounds *r, sf_error *error);
+/* Makes the target that the options ask for; NULL where they ask for none. For a film of these options. */
+sf_status sf_relmse_target_create(const sf_render_options *options, const sf_film *film, sf_relmse_target **goal,
+                                  sf_error *error);
 void sf_relmse_target_destroy(sf_relmse_target *goal);
 
-/* Notes what pixel (x, y) of the film has come to. */
-void sf_relmse_target_take_note(struct sf_rounds *r, uint32_t x, uint32_t y);
+/* Notes what pixel (x, y) of the film has come to. Threads may note pixels that are not the same. */
+void sf_relmse_target_take_note(sf_relmse_target *goal, const sf_film *film, uint32_t x, uint32_t y);
 
 /* The notes, by pixel of the film; NULL where there is no goal. */
 sf_relmse_target_note *sf_relmse_target_notes(sf_relmse_target *goal);
 
-/* Chooses the pixels of the next lap, and where it begins and looks: r->active,
- * r->from, r->look. False: the goal is
- * reached, or no pixel may have more samples. */
-bool sf_relmse_target_choose(struct sf_rounds *r);
+/* Selects the next lap among the open pixels: fills `active` with its pixels, by cell of the film. No lap begins
+ * where the goal is reached, or where no pixel may have more samples. */
+sf_lap sf_relmse_target_select(sf_relmse_target *goal, const struct sf_rounds *r, uint64_t *active);
 
-/* Whether it is reached, as of the last call of the above. */
+/* As of the last call of the above: whether the goal is reached, the picture's relMSE, and how many pixels were
+ * wanted more samples of. */
 bool sf_relmse_target_is_reached(const sf_relmse_target *goal);
+double sf_relmse_target_estimate(const sf_relmse_target *goal);
+uint64_t sf_relmse_target_beyond(const sf_relmse_target *goal);
 
 #endif

@@ -14,6 +14,8 @@
 #include "film/mask.h"
 #include "film/render_options.h"
 #include "render/checkpoint.h"
+#include "render/progress.h"
+#include "render/relmse_target.h"
 #include "render/rounds.h"
 
 static void resolve_row(void *user, unsigned worker, size_t item) {
@@ -83,7 +85,7 @@ static sf_status prepare(sf_rounds *r, sf_error *error) {
     r->context.aovs = o->aovs;
     if (!status) status = lay_out_cells(r, error);
     if (!status) status = hire_workers(r, error);
-    if (!status) status = sf_relmse_target_prepare(r, error);
+    if (!status) status = sf_relmse_target_create(o, r->film, &r->goal, error);
     if (status) return status;
     r->region = sf_rounds_count_pixels(r, r->open);
     if (o->samples && sf_rounds_budget(r) < r->region)

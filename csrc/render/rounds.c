@@ -1,46 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Rounds over tiles, decisions between them, and the checkpoints that either leaves. */
 #include "render/rounds.h"
-
-#include "film/aov.h"
-#include "film/film_looks.h"
 
 #include <math.h>
 #include <string.h>
 
-/* ---- progress ---- */
-
-uint64_t sf_rounds_samples(const sf_rounds *r) {
-    uint64_t samples = 0;
-    for (uint32_t i = 0; i < r->options.threads; ++i) samples += sf_atomic_load(&r->workers[i].samples);
-    return samples;
-}
-
-static void report(sf_rounds *r, bool round_finished) {
-    if (!r->options.progress) return;
-    sf_progress *p = &r->progress;
-    p->samples = sf_rounds_samples(r);
-    p->seconds = sf_seconds_now() - r->start;
-    p->round_finished = round_finished;
-    if (r->options.progress(p, r->options.progress_user) != 0) sf_atomic_store(&r->state, SF_INTERRUPTED);
-}
-
-void sf_rounds_wake(void *user) { report(user, false); }
-
-static void report_round(sf_rounds *r) {
-    sf_progress *p = &r->progress;
-    p->round = r->film->summary.rounds;
-    p->pixels_done = p->pixels_met = 0;
-    for (uint32_t i = 0; i < r->options.threads; ++i) {
-        p->pixels_done += r->workers[i].done;
-        p->pixels_met += r->workers[i].met;
-    }
-    p->tolerance = fmax(r->film->summary.tolerance, 0);
-    if (r->goal && !r->second && sf_atomic_load(&r->state) == SF_RUNNING)
-        p->pixels_done = p->pixels - (r->beyond < p->pixels ? r->beyond : p->pixels);
-    report(r, true);
-}
+#include "film/aov.h"
+#include "film/film_looks.h"
+#include "render/checkpoint.h"
+#include "render/pixel_selection.h"
+#include "render/progress.h"
+#include "render/relmse_target.h"
 
 /* ---- checkpoints ---- */
 
@@ -78,7 +50,7 @@ static bool checkpoint_is_due(const sf_rounds *r) {
 
 static void wake_sampling(void *user) {
     sf_rounds *r = user;
-    report(r, false);
+    sf_rounds_wake(r);
     if (checkpoint_is_due(r) && sf_atomic_load(&r->state) == SF_RUNNING) sf_atomic_store(&r->state, SF_PAUSED);
 }
 
@@ -149,7 +121,7 @@ static bool decide_pixel(sf_rounds *r, uint32_t x, uint32_t y, size_t state) {
     bool met = !o->spp && summary->tolerance >= 0 && sf_film_taken(pixel) >= o->min_spp &&
                (double)pixel->half_width <= summary->tolerance;
     if (r->goal) { /* no pixel is met before the whole picture is */
-        sf_relmse_target_take_note(r, x, y);
+        sf_relmse_target_take_note(r->goal, r->film, x, y);
         met = state == SF_SPENT && sf_relmse_target_is_reached(r->goal);
     }
     if (!met && !full && state == SF_RUNNING) return false;
@@ -160,7 +132,8 @@ static bool decide_pixel(sf_rounds *r, uint32_t x, uint32_t y, size_t state) {
 }
 
 /* Closes the pixels that are done, and counts those of the picture. */
-static void decide_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
+static void decide_cell(void *user, unsigned worker, uint32_t cell) {
+    sf_rounds *r = user;
     uint32_t x0 = sf_rounds_x(r, cell, 0), y0 = sf_rounds_y(r, cell, 0);
     for (uint32_t y = y0; y < y0 + SF_CELL_SIZE; ++y) /* row by row, as they lie in memory */
         for (uint32_t x = x0; x < x0 + SF_CELL_SIZE; ++x) {
@@ -168,14 +141,14 @@ static void decide_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
             if (!(r->active[cell] & bit) || !decide_pixel(r, x, y, r->sampled)) continue;
             r->open[cell] &= ~bit;
             if (!sf_rounds_in_picture(r, x, y)) continue;
-            ++worker->done;
-            worker->met += sf_film_at(r->film, x, y)->reason == SF_STOP_REASON_MET;
+            ++r->workers[worker].done;
+            r->workers[worker].met += sf_film_at(r->film, x, y)->reason == SF_STOP_REASON_MET;
         }
 }
 
 static void decide_tile(void *user, unsigned worker, size_t item) {
     sf_rounds *r = user;
-    sf_rounds_each_cell(r, worker, r->tiles[item], r->active, decide_cell);
+    sf_rounds_each_cell(r, r->tiles[item], r->active, decide_cell, r, worker);
 }
 
 static void sum_row(void *user, unsigned worker, size_t item) {
@@ -214,6 +187,38 @@ static void decide(sf_rounds *r) {
     sf_thread_pool_run(r->pool, r->tile_count, decide_tile, sf_rounds_wake, r);
 }
 
+/* ---- laps ---- */
+
+static bool tile_has(const sf_rounds *r, uint32_t tile, const uint64_t *cells) {
+    sf_cell_range range = sf_rounds_tile(r, tile);
+    for (uint32_t y = range.y0; y < range.y1; ++y)
+        for (uint32_t x = range.x0; x < range.x1; ++x)
+            if (cells[(size_t)y * r->film->cell_columns + x]) return true;
+    return false;
+}
+
+void sf_rounds_list_tiles(sf_rounds *r) {
+    r->tile_count = 0;
+    for (uint32_t tile = 0; tile < r->tile_columns * r->tile_rows; ++tile)
+        if (tile_has(r, tile, r->active)) r->tiles[r->tile_count++] = tile;
+}
+
+/* Begins the lap that the selection returns. False: nothing is left. */
+static bool begin_lap(sf_rounds *r) {
+    sf_lap lap = sf_select_lap(r, r->active);
+    r->target = lap.target;
+    if (r->goal) r->progress.relmse = sf_relmse_target_estimate(r->goal);
+    if (r->goal) r->beyond = sf_relmse_target_beyond(r->goal);
+    r->in_lap = lap.begins;
+    r->from = lap.begins ? lap.from : r->to;
+    if (!lap.begins) return false;
+    sf_rounds_list_tiles(r);
+    r->to = r->from;
+    r->look = lap.look;
+    r->pairing = r->second ? (sf_pairing){0, 0} : sf_stop_pairing(&r->options, r->look);
+    return true;
+}
+
 /* ---- rounds ---- */
 
 /* Where the next round of the lap ends: with a clock to watch, rounds are short. */
@@ -244,15 +249,14 @@ static void run_round(sf_rounds *r) {
     if (!r->in_lap) decide(r);
     r->from = r->to;
     ++r->film->summary.rounds;
-    report_round(r);
+    sf_rounds_report_round(r);
     if (sf_atomic_load(&r->state) != SF_RUNNING || checkpoint_is_due(r)) save_checkpoint(r);
 }
 
 /* Laps until no pixel is open, or the state is no longer running; closes the rest. */
 static void run_stage(sf_rounds *r) {
     while (sf_atomic_load(&r->state) == SF_RUNNING) {
-        if (!r->in_lap && !sf_rounds_begin_lap(r)) {
-            r->in_lap = false;
+        if (!r->in_lap && !begin_lap(r)) {
             save_checkpoint(r);
             break;
         }

@@ -18,10 +18,11 @@
 #include "base/parallel.h"
 #include "film/film_internal.h"
 #include "film/stopping.h"
-#include "render/checkpoint.h"
-#include "render/relmse_target.h"
 #include "sunfleck/rng.h"
 #include "trace/batch.h"
+
+struct sf_checkpoint;
+struct sf_relmse_target;
 
 #define SF_CELL_PIXELS (SF_CELL_SIZE * SF_CELL_SIZE)
 
@@ -31,7 +32,7 @@ enum { SF_RUNNING = 0, SF_OUT_OF_TIME, SF_INTERRUPTED, SF_SPENT, SF_PAUSED };
 typedef struct sf_rounds_worker {
     SF_ALIGNED(sf_atomic_size) samples; /* traced so far */
     uint64_t done, met;                 /* pixels of the picture, by its decisions */
-    double worst;                       /* of the pixels it surveyed; see pixel_selection.c */
+    double worst;                       /* these three are pixel_selection.c's, of the pixels it surveyed */
     uint32_t least;
     uint64_t chosen;
     sf_rng stream; /* seeds = thread, shared */
@@ -52,15 +53,15 @@ typedef struct sf_rounds {
     uint32_t tile_cells;       /* a side */
     uint32_t *tiles;           /* those with active pixels */
     size_t tile_count;
-    uint32_t from, to;      /* the round's sample counts; equal between rounds */
-    uint32_t ahead;         /* after a pause or a resume pixels may have up to so many samples already */
-    uint64_t region;        /* pixels traced */
-    bool in_lap;            /* a lap has begun and not ended */
-    uint32_t look;          /* where the lap ends, unless the render does */
-    sf_pairing pairing;     /* of the lap's blocks */
-    double target;          /* of a budget: half-widths beyond it are to be lowered */
-    sf_relmse_target *goal; /* of the whole picture; NULL where there is none */
-    uint64_t beyond;        /* pixels that the goal still wants more samples of */
+    uint32_t from, to;             /* the round's sample counts; equal between rounds */
+    uint32_t ahead;                /* after a pause or a resume pixels may have up to so many samples already */
+    uint64_t region;               /* pixels traced */
+    bool in_lap;                   /* a lap has begun and not ended */
+    uint32_t look;                 /* where the lap ends, unless the render does */
+    sf_pairing pairing;            /* of the lap's blocks */
+    double target;                 /* of a budget: half-widths beyond it are to be lowered */
+    struct sf_relmse_target *goal; /* of the whole picture; NULL where there is none */
+    uint64_t beyond;               /* pixels that the goal still wants more samples of */
     bool level_fixed;
     bool second; /* the pilot is over: the set that the picture shows is taken */
     double start, deadline;
@@ -117,27 +118,23 @@ static inline sf_cell_range sf_rounds_tile(const sf_rounds *r, uint32_t tile) {
 }
 
 /* Calls `visit` for every cell of the tile that has a pixel in `cells`, r->active or r->open. */
-static inline void sf_rounds_each_cell(sf_rounds *r, unsigned worker, uint32_t tile, const uint64_t *cells,
-                                       void (*visit)(sf_rounds *, sf_rounds_worker *, uint32_t)) {
+static inline void sf_rounds_each_cell(const sf_rounds *r, uint32_t tile, const uint64_t *cells,
+                                       void (*visit)(void *user, unsigned worker, uint32_t cell), void *user,
+                                       unsigned worker) {
     sf_cell_range range = sf_rounds_tile(r, tile);
     for (uint32_t y = range.y0; y < range.y1; ++y)
         for (uint32_t x = range.x0; x < range.x1; ++x)
-            if (cells[(size_t)y * r->film->cell_columns + x])
-                visit(r, r->workers + worker, y * r->film->cell_columns + x);
+            if (cells[(size_t)y * r->film->cell_columns + x]) visit(user, worker, y * r->film->cell_columns + x);
 }
 
 /* tile_sampling.c: takes the round's samples of a tile; an sf_parallel_fn over the tiles listed. */
 void sf_rounds_sample_tile(void *user, unsigned worker, size_t item);
 
-/* pixel_selection.c: lists the tiles that have an active pixel. */
+/* Lists the tiles that have an active pixel. */
 void sf_rounds_list_tiles(sf_rounds *r);
 
-/* pixel_selection.c: sets the next lap: its pixels, where it begins and where it looks. False: nothing is
- * left. */
-bool sf_rounds_begin_lap(sf_rounds *r);
-
 /* What a checkpoint of the render holds, but for its state. */
-sf_checkpoint sf_rounds_checkpoint(sf_rounds *r);
+struct sf_checkpoint sf_rounds_checkpoint(sf_rounds *r);
 
 /* The budget of samples of the stage at work: a pilot has half. */
 static inline uint64_t sf_rounds_budget(const sf_rounds *r) {
@@ -149,12 +146,6 @@ static inline void sf_rounds_set_deadline(sf_rounds *r) {
     double seconds = r->options.unbiased && !r->second ? r->options.seconds / 2 : r->options.seconds;
     r->deadline = r->options.seconds > 0 ? r->start + seconds : 0;
 }
-
-/* Paths traced so far. */
-uint64_t sf_rounds_samples(const sf_rounds *r);
-
-/* Reports progress while a phase runs: an sf_parallel_wait_fn. */
-void sf_rounds_wake(void *user);
 
 /* Fills the summary's level from the film as it stands, and the tolerance from the level. */
 void sf_rounds_measure_level(sf_rounds *r);

@@ -80,7 +80,9 @@ static block_layout lay_out_blocks(const sf_rounds *r, uint32_t n) {
     return (block_layout){width, n % SF_LANES / width * width};
 }
 
-static void sample_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
+static void sample_cell(void *user, unsigned number, uint32_t cell) {
+    sf_rounds *r = user;
+    sf_rounds_worker *worker = r->workers + number;
     if (sf_atomic_load(&r->state) != SF_RUNNING) return;
     uint64_t active = r->active[cell], keys[SF_CELL_PIXELS];
     uint32_t x = sf_rounds_x(r, cell, 0), y = sf_rounds_y(r, cell, 0);
@@ -108,5 +110,6 @@ static void sample_cell(sf_rounds *r, sf_rounds_worker *worker, uint32_t cell) {
 
 void sf_rounds_sample_tile(void *user, unsigned worker, size_t item) {
     sf_rounds *r = user;
-    if (sf_atomic_load(&r->state) == SF_RUNNING) sf_rounds_each_cell(r, worker, r->tiles[item], r->active, sample_cell);
+    if (sf_atomic_load(&r->state) == SF_RUNNING)
+        sf_rounds_each_cell(r, r->tiles[item], r->active, sample_cell, r, worker);
 }
