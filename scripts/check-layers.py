@@ -2,17 +2,21 @@
 # SPDX-FileCopyrightText: 2026 The Sunfleck developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Fails on an #include or a symbol of the C library that points up its order of modules.
+"""Fails on an #include or a symbol of the C library that points up its order, and on files that call in circles.
 
     check-layers.py [BUILD]     BUILD: a folder with compiled objects, whose symbols are read by nm
 
 A module is a folder of csrc/. It may use itself and the modules before it, and the public headers
-of these; a public header includes only those of its own module and of the modules before it.
+of these; a public header includes only those of its own module and of the modules before it. Within
+a module the files have an order too, whichever it is: none may need a symbol of a file that needs one of
+its own, directly or by way of others.
 """
 
 import re
 import subprocess
 import sys
+from graphlib import CycleError, TopologicalSorter
+from itertools import pairwise
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -49,32 +53,51 @@ def upward_includes() -> list[str]:
     return found
 
 
-def upward_symbols(build: Path) -> list[str]:
-    """By object: what it defines is its module's, what it lacks must be of a module that is not above."""
+def read_symbols(build: Path) -> tuple[dict[str, str], list[tuple[str, str]]]:
+    """The file that defines a symbol, as module/name, and which file needs which; a kernel's objects are one file."""
     home: dict[str, str] = {}
     needed: list[tuple[str, str]] = []
     for path in sorted(build.rglob("*.o")):
-        module = next((m for m in path.parts if m in ORDER and path.parent.name == m), None)
-        if module is None:
+        if path.parent.name not in ORDER:
             continue
+        file = f"{path.parent.name}/{path.name.split('.')[0]}"
         listing = subprocess.run(["nm", "-P", path], capture_output=True, text=True, check=True).stdout
         for name, kind, *_ in (line.split() for line in listing.splitlines()):
             if kind == "U":
-                needed.append((module, name))
+                needed.append((file, name))
             elif kind.isupper():
-                home[name] = module
+                home[name] = file
     if not home:
         sys.exit(f"check-layers: no objects of csrc/ in {build}")
-    upward = {(m, name) for m, name in needed if rank(home.get(name, m)) > rank(m)}
-    return [f"{module} calls {name} of {home[name]}" for module, name in sorted(upward)]
+    return home, [(file, name) for file, name in needed if home.get(name, file) != file]
+
+
+def misplaced_symbols(build: Path) -> list[str]:
+    """Symbols that point up the modules, and those that close a circle of files."""
+    home, needed = read_symbols(build)
+    found = {
+        f"{file} needs {name} of {home[name]}, which stands above it"
+        for file, name in needed
+        if rank(module_of(home[name])) > rank(module_of(file))
+    }
+    calls: dict[str, set[str]] = {}
+    for file, name in needed:
+        calls.setdefault(file, set()).add(home[name])
+    try:
+        TopologicalSorter(calls).prepare()
+    except CycleError as circle:  # of which each file is needed by the next
+        for callee, caller in pairwise(circle.args[1]):
+            names = sorted({name for file, name in needed if (file, home[name]) == (caller, callee)})
+            found.add(f"{caller} needs {', '.join(names)} of {callee}, in a circle")
+    return sorted(found)
 
 
 def main() -> None:
     found = upward_includes()
     for build in sys.argv[1:]:
-        found += upward_symbols(Path(build) / "csrc")
+        found += misplaced_symbols(Path(build) / "csrc")
     if found:
-        sys.exit("\n".join([*found, f"{len(found)} point up the order {' < '.join(ORDER)}"]))
+        sys.exit("\n".join([*found, f"{len(found)} against the order {' < '.join(ORDER)}"]))
 
 
 if __name__ == "__main__":
