@@ -24,34 +24,6 @@
 #define MAX_ATTRIBUTES 40
 #define TEXT_SIZE 96
 
-const char *sf_pixel_filter_name(sf_pixel_filter filter) {
-    static const char *const names[] = {"box",      "tent",   "gaussian", "gaussian_truncated", "blackman_harris",
-                                        "mitchell", "lanczos"};
-    return (unsigned)filter < sizeof names / sizeof *names ? names[filter] : NULL;
-}
-
-const char *sf_work_name(sf_work work) {
-    static const char *const names[] = {"coordinates", "camera", "camera rays", "shadow rays", "surface rays",
-                                        "vertices",    "light",  "surface",     "sums",        "film"};
-    return (unsigned)work < SF_WORK_COUNT ? names[work] : NULL;
-}
-
-const char *sf_stop_rule_name(sf_stop_rule rule) {
-    static const char *const names[] = {"standard_error", "replicates", "dyadic"};
-    return (unsigned)rule < 3 ? names[rule] : NULL;
-}
-
-const char *sf_seed_policy_name(sf_seed_policy policy) {
-    static const char *const names[] = {"pixel", "thread", "shared"};
-    return (unsigned)policy < 3 ? names[policy] : NULL;
-}
-
-const char *sf_stop_reason_name(sf_stop_reason reason) {
-    static const char *const names[] = {"fixed",      "met",         "max_samples", "out_of_time",
-                                        "suspicious", "interrupted", "masked"};
-    return (unsigned)reason < SF_STOP_REASON_COUNT ? names[reason] : NULL;
-}
-
 static uint32_t round_up(uint32_t x) { return (x + SF_CELL_SIZE - 1) / SF_CELL_SIZE * SF_CELL_SIZE; }
 static uint32_t smaller(uint32_t a, uint32_t b) { return a < b ? a : b; }
 
