@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/platform.h"
+#include "film/film_internal.h"
 #include "film/stopping.h"
 
 /* An AOV's components; those without sums of their own are told from the film's statistics. */

@@ -9,7 +9,8 @@
 #ifndef SUNFLECK_AOV_H
 #define SUNFLECK_AOV_H
 
-#include "film/film_internal.h"
+#include "film/block.h"
+#include "sunfleck/film.h"
 
 /* Those that the first hit tells. */
 #define SF_AOVS_OF_HITS (1u << SF_AOV_ALBEDO | 1u << SF_AOV_NORMAL | 1u << SF_AOV_DEPTH)

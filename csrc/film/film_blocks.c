@@ -5,6 +5,7 @@
 #include "film/film_blocks.h"
 
 #include "film/aov.h"
+#include "film/film_internal.h"
 #include "film/signed_filter.h"
 
 /* Adds block i to its pixel's statistics, and to what the stopping rule keeps. */

@@ -5,7 +5,6 @@
 #ifndef SUNFLECK_FILM_BLOCKS_H
 #define SUNFLECK_FILM_BLOCKS_H
 
-#include "film/film_internal.h"
 #include "film/stopping.h"
 
 /* What the blocks of a round have in common. */

@@ -7,6 +7,7 @@
 #include <stdio.h>
 
 #include "base/error.h"
+#include "film/film_internal.h"
 
 static bool traced(const sf_render_options *o, uint32_t x, uint32_t y) {
     return !o->mask || o->mask[(size_t)y * o->mask_stride + x] != 0;

@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-#include "film/film_internal.h"
+#include "sunfleck/film.h"
 
 /* Refuses a mask that leaves no pixel of the crop, and a stride below the width; fills in the
  * stride. After the sizes and the crop were checked. */

@@ -6,6 +6,7 @@
 #include "film/option_table.h"
 
 #include <inttypes.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -3,6 +3,7 @@
 
 #include "film/signed_filter.h"
 
+#include "film/film_internal.h"
 #include "mapping/lanczos_table_f64.h"
 
 double sf_filter_negative_part(sf_pixel_filter filter) {

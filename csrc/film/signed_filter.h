@@ -20,7 +20,8 @@
 #ifndef SUNFLECK_SIGNED_FILTER_H
 #define SUNFLECK_SIGNED_FILTER_H
 
-#include "film/film_internal.h"
+#include "film/pixel.h"
+#include "sunfleck/film.h"
 
 typedef struct sf_signed_pixel {
     sf_vector_moments positive, negative;

@@ -14,6 +14,7 @@
 
 #include "base/error.h"
 #include "base/platform.h"
+#include "sunfleck/points.h"
 
 #define LOOK_SECONDS 50e-6  /* about the time to sleep and wake twice */
 #define SOON_SECONDS 250e-6 /* work that comes at this pace is worth a member that is awake */

@@ -5,7 +5,7 @@
 #ifndef SUNFLECK_THREAD_TEAM_H
 #define SUNFLECK_THREAD_TEAM_H
 
-#include "sunfleck/points.h"
+struct sf_thread_team;
 
 typedef void (*sf_thread_team_fn)(void *user, unsigned share);
 
@@ -14,6 +14,6 @@ typedef void (*sf_thread_team_fn)(void *user, unsigned share);
  * could not be had or is late. A member that sleeps is woken where the work `is_long`, some
  * 50 us or more, or follows other work closely. Returns when all are done: 1; or 0 at once, without any work, where the
  * team is at work for another caller. */
-int sf_thread_team_run(sf_thread_team *team, unsigned shares, int is_long, sf_thread_team_fn work, void *user);
+int sf_thread_team_run(struct sf_thread_team *team, unsigned shares, int is_long, sf_thread_team_fn work, void *user);
 
 #endif

@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-#include "film/film_internal.h"
+#include "sunfleck/film.h"
 
 struct sf_relmse_target_note;
 

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "film/film_internal.h"
 #include "film/mask.h"
 #include "film/option_table.h"
 #include "film/render_options.h"

@@ -6,7 +6,7 @@
 #define SUNFLECK_LANES_H
 
 #include "base/platform.h"
-#include "trace/sample_dimensions.h"
+#include "film/block.h"
 
 /* Calls f(width, ...), which is inlined, with the width of a batch's blocks as a constant: each has loops of its own.
  */

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "film/block.h"
 #include "points/halton.h"
 #include "sunfleck/film.h"
 

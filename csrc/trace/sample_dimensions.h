@@ -12,7 +12,6 @@
 #ifndef SUNFLECK_SAMPLE_DIMENSIONS_H
 #define SUNFLECK_SAMPLE_DIMENSIONS_H
 
-#include "film/block.h"
 #include "sunfleck/points.h"
 #include "sunfleck/scene.h"
 

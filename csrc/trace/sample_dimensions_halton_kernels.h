@@ -5,6 +5,7 @@
 #define SUNFLECK_SAMPLE_DIMENSIONS_HALTON_KERNELS_H
 
 #include "base/isa_dispatch.h"
+#include "film/block.h"
 #include "trace/sample_dimensions.h"
 
 typedef struct sf_sample_dimensions_halton_kernels {

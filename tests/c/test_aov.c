@@ -3,6 +3,7 @@
 
 /* AOVs against what the scene says, the halves against renders of their samples, and the same
  * bits however the work is divided. */
+#include "film/film_internal.h"
 #include "scenes.h"
 
 #include "film/aov.h"
