@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Writes files beside the ones that they replace, and renames them when they are whole. */
 #include "base/atomic_file.h"
 
 #include <errno.h>

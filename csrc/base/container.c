@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Writes and reads files of named arrays, and checks their checksum and their layout on the way in. */
 #include "base/container.h"
 
 #include <errno.h>

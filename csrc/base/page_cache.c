@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Keeps the pages of the film destroyed last for the next one. */
 #include "base/page_cache.h"
 
 #include "base/platform.h"

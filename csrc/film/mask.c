@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Checks, copies, counts and describes the mask of pixels that a render traces. */
 #include "film/mask.h"
 
 #include <inttypes.h>

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Adds samples of either sign of a filter to a pixel, and tells the pixel's moments from the two parts. */
 #include "film/signed_filter.h"
 
 #include "film/film_internal.h"

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Fills rows of Halton points: fractions become words, nested scrambles take their steps, columns become rows. */
 #include "points/halton_kernels.h"
 
 #include <string.h>

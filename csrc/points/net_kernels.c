@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Fills rows of digital nets: steps from block to block, scrambles words, and converts them to floats. */
 #include "points/net_kernels.h"
 
 #include <string.h>

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Converts the words of points to floats, and hashes the keys of their rows. */
 #include "points/points_kernels.h"
 
 #include "base/platform.h"

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Fills rows of latin hypercubes: permutes strata, walks until they are below the count, and jitters within. */
 #include "points/points_latin_kernels.h"
 
 #include "base/platform.h"

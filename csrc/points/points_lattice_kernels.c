@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Fills rows of lattice points: multiples of a vector modulo 1, in 64 bits. */
 #include "points/points_lattice_kernels.h"
 
 #include "base/platform.h"

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Generators by kind: made, reset, skipped, spawned, and their states read and written. */
 #include "sunfleck/rng.h"
 
 #include <assert.h>

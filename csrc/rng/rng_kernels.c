@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Draws and converts arrays of random numbers in loops that vectorize. */
 #include "rng/rng_kernels.h"
 
 #include <string.h>

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Skips draws of congruential generators and of those that are linear over bits, in steps that double. */
 #include <assert.h>
 #include <string.h>
 

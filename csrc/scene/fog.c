@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Sets and checks a scene's fog, and gives it its row in the table of meshes. */
 #include "base/error.h"
 #include "scene/scene_input.h"
 #include "scene/scene_internal.h"

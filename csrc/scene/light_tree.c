@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Builds the tree over the pieces of the lights, node by node at the split of least cost. */
 #include "scene/light_tree.h"
 
 #include <math.h>

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Checks materials, and tells how their surfaces scatter. */
 #include "sunfleck/material.h"
 
 #include <math.h>

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Sums what the camera rays' first hits tell over each block of a batch. */
 #include "trace/aov_kernels.h"
 
 #include <math.h>

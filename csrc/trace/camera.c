@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Makes the frame of a camera, from which its rays start. */
 #include <math.h>
 
 #include "trace/batch.h"

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Makes the camera rays of a batch: places within the pixel by its filter, origins on the lens. */
 #include "trace/camera_kernels.h"
 
 #include <math.h>

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Scatters rays in fog, and dims the light that comes through it. */
 #include "trace/fog_kernels.h"
 
 #include <math.h>

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Gathers the radiance of a batch's paths into statistics of its blocks. */
 #include "trace/gather_kernels.h"
 
 #include <math.h>

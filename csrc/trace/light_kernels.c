@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Samples light from triangles and parallelograms by area, and adds what arrives. */
 #include "trace/light_kernels.h"
 
 #include <math.h>

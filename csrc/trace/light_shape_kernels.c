@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Samples light from pieces of every shape and from the sky, and weighs the light that rays find. */
 #include "trace/light_shape_kernels.h"
 
 #include <math.h>

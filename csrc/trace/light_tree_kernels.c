@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Draws pieces of light by walks down the tree, 16 vertices in step. */
 #include "trace/light_tree_kernels.h"
 
 #include <math.h>

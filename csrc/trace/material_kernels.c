@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Scatters paths at mirrors, conductors, dielectrics and in fog, and weighs the light that they reflect. */
 #include "trace/material_kernels.h"
 
 #include <math.h>

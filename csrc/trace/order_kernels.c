@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Lists and sorts a batch's rays, so that those of a packet have much in common. */
 #include "trace/order_kernels.h"
 
 #include <string.h>

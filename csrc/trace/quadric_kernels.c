@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Gives hits on spheres and disks their normals, and puts hit points back onto spheres. */
 #include "trace/quadric_kernels.h"
 
 #include <math.h>

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Assigns the plan's dimensions to sets of the pattern, and readies the pattern's tables. */
 #include "trace/sample_dimensions.h"
 
 #include <assert.h>

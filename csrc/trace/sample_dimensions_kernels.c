@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Fills the sample coordinates of blocks, for each pattern in a loop of its own. */
 #include "trace/sample_dimensions_kernels.h"
 
 #include <stdbool.h>

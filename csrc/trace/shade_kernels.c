@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Shades what a batch's rays hit: adds emission, places vertices, plays roulette, starts the next rays. */
 #include "trace/shade_kernels.h"
 
 #include <math.h>

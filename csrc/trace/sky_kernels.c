@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Adds the radiance of suns and the environment to rays that miss. */
 #include "trace/sky_kernels.h"
 
 #include <math.h>

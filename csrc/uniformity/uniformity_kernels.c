@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+/* Computes what measures of uniformity sum and compare, in loops over blocks of points that vectorize. */
 #include "uniformity/uniformity_kernels.h"
 
 #include <math.h>
