@@ -4,7 +4,8 @@
 /* What a prepared set of 21,201 dimensions costs, to make, and for a point anywhere in it; and what two
  * threads gain on a prepared set of 16, where a call has nothing to do but fill.
  *
- *     cc -std=c99 -O2 -I csrc/include bench/points_prepared_set.c build/csrc/libsunfleck_core.a -lm -pthread -o build/point_set
+ *     cc -std=c99 -O2 -I csrc/include bench/points_prepared_set.c build/csrc/libsunfleck_core.a -lm -pthread \
+ *        -o build/point_set
  */
 #define _POSIX_C_SOURCE 200112L /* clock_gettime, posix_memalign */
 #include <stdio.h>
