@@ -233,8 +233,6 @@ def top_page(name: str) -> str:
 def front_page() -> str:
     """The project's README and the tables of contents."""
     text = top_page("README").replace("](/index.md)", "](#modules)")
-    pictures, _, rest = text.partition("\n# ")
-    text = f"# {rest.replace(chr(10), chr(10) * 2 + pictures + chr(10), 1)}"
     prose = prose_pages()
     modules = "\n".join(f"- [{page}]({page}.md)" for page in prose["Modules"])
     contents = [toctree(caption, pages) for caption, pages in {**prose, **REFERENCE}.items()]
