@@ -47,10 +47,36 @@ static int open_and_lock(sf_atomic_file *r) {
     return 0;
 }
 
+/* The file that a path stands for, through symbolic links, also those to a file that there is not yet; NULL where
+ * there is no memory, or for links in a circle, with errno. */
+static char *follow(const char *path) {
+    char *found = realpath(path, NULL), link[4096];
+    if (found || errno != ENOENT) return found;
+    ssize_t length = readlink(path, link, sizeof link - 1);
+    if (length < 0) return strdup(path); /* there is none yet, and no link */
+    link[length] = 0;
+    const char *slash = link[0] == '/' ? NULL : strrchr(path, '/');
+    size_t folder = slash ? (size_t)(slash - path) + 1 : 0;
+    char *next = malloc(folder + (size_t)length + 1);
+    if (!next) return NULL;
+    memcpy(next, path, folder);
+    memcpy(next + folder, link, (size_t)length + 1);
+    found = follow(next); /* realpath has refused links in a circle by now */
+    free(next);
+    return found;
+}
+
+/* The mode of the file that is to be replaced, which the new one keeps. */
+static void keep_mode(const sf_atomic_file *r) {
+    struct stat old;
+    if (stat(r->target, &old) == 0) (void)fchmod(r->file, old.st_mode & 07777);
+}
+
 sf_status sf_atomic_file_open(sf_atomic_file *r, const char *path, sf_error *error) {
     *r = (sf_atomic_file){.file = -1};
-    r->target = realpath(path, NULL);
-    if (!r->target) r->target = strdup(path); /* there is none yet */
+    errno = ENOMEM;
+    r->target = follow(path);
+    if (!r->target && errno != ENOMEM) return fail_io("write", path, error);
     if (r->target) r->beside = malloc(strlen(r->target) + sizeof SUFFIX);
     if (!r->beside) {
         close_all(r);
@@ -60,7 +86,10 @@ sf_status sf_atomic_file_open(sf_atomic_file *r, const char *path, sf_error *err
     strcat(r->beside, SUFFIX);
     int opened = 0;
     while (opened == 0) opened = open_and_lock(r);
-    if (opened > 0) return SF_STATUS_OK;
+    if (opened > 0) {
+        keep_mode(r);
+        return SF_STATUS_OK;
+    }
     sf_status status = fail_io("write", r->beside, error);
     close_all(r);
     return status;

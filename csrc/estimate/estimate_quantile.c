@@ -24,8 +24,22 @@ static double normal_centre(double d) {
     return z;
 }
 
+/* The same where P(Z > z) and the density are near the end of doubles, z > 36: on the asymptotic series of the
+ * logarithm (Abramowitz & Stegun 26.2.12), whose next term is below 10^-11 of the probability there. */
+static double normal_far_tail(double q) {
+    double z = sqrt(-2.0 * log(q));
+    for (int i = 0; i < MAX_STEPS; ++i) {
+        double w = 1.0 / (z * z), series = 1.0 - w * (1.0 - w * (3.0 - w * (15.0 - w * (105.0 - w * 945.0))));
+        double step = (-0.5 * z * z - log(z * sqrt(2.0 * PI)) + log(series) - log(q)) * series / z;
+        z += step;
+        if (fabs(step) <= 1e-15 * z) break;
+    }
+    return z;
+}
+
 /* z >= 0 with P(Z > z) = q, q at most 1/4: Newton's steps on log P, which is concave. */
 static double normal_tail(double q) {
+    if (q < 1e-290) return normal_far_tail(q);
     double z = sqrt(-2.0 * log(2.0 * q)); /* P(Z > z) <= exp(-z^2 / 2) / 2, so this is beyond */
     for (int i = 0; i < MAX_STEPS; ++i) {
         double tail = 0.5 * erfc(z * sqrt(0.5));

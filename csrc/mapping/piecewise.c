@@ -92,7 +92,7 @@ static double share_of(const line *l, size_t cell) { return l->cdf[cell + 1] - l
 static double place_of(const line *l, double u, size_t cell, int is_double) {
     double x = ((double)cell + (u - l->cdf[cell]) / share_of(l, cell)) / (double)l->n;
     if (is_double) {
-        while (cell_at(x, l->n) > cell) x = nextafter(x, 0.0);
+        while (cell_at(x, l->n) > cell || x >= 1.0) x = nextafter(x, 0.0);
         while (cell_at(x, l->n) < cell) x = nextafter(x, 1.0);
         return x;
     }

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include <cstring>
+
 #include "bind.h"
 
 namespace {
@@ -22,7 +24,10 @@ nb::object exception_of(sf_status status) {
 
 void raise_unless_ok(sf_status status, const sf_error &error) {
     if (status == SF_STATUS_OK) return;
-    PyErr_SetString(exception_of(status).ptr(), error.message[0] ? error.message : sf_status_name(status));
+    // What a file held may be in the message, and may be no text.
+    const char *said = error.message[0] ? error.message : sf_status_name(status);
+    nb::object text = nb::steal(PyUnicode_DecodeUTF8(said, static_cast<Py_ssize_t>(std::strlen(said)), "replace"));
+    if (text.is_valid()) PyErr_SetObject(exception_of(status).ptr(), text.ptr());
     throw nb::python_error();
 }
 

@@ -96,6 +96,8 @@ def text(name: str, value: Any) -> str:
     """A string."""
     if not isinstance(value, str):
         raise TypeError(f"{name} is {value!r}; give a string")
+    if any(c == "\0" or "\ud800" <= c <= "\udfff" for c in value):  # C would end the text there; or it is none
+        raise ValueError(f"{name} is {value!r}; it must not hold a null character or half of a surrogate pair")
     return value
 
 

@@ -357,3 +357,22 @@ def test_a_failed_write_in_between_is_a_warning(
         sf.render(penumbra, 16, 16, spp=256, checkpoint=folder / "x.ckpt", checkpoint_seconds=0, progress=remove)
     assert len(caplog.records) > 1
     assert (caught.value.image.samples == 256).all()
+
+
+def test_a_link_to_a_file_that_is_not_there_yet_stays_a_link(tmp_path: Path) -> None:
+    (tmp_path / "disk").mkdir()
+    link = tmp_path / "c.ckpt"
+    link.symlink_to("disk/real.ckpt")
+    sf.render(sf.scenes.penumbra(), 16, 16, spp=4, checkpoint=link)
+    assert link.is_symlink()
+    assert (tmp_path / "disk" / "real.ckpt").is_file()
+
+
+def test_a_replaced_file_keeps_its_mode(tmp_path: Path) -> None:
+    image = sf.render(sf.scenes.penumbra(), 16, 16, spp=4, checkpoint=tmp_path / "c.ckpt")
+    image.save(tmp_path / "a.png")
+    for name in ("c.ckpt", "a.png"):
+        (tmp_path / name).chmod(0o600)
+    sf.render(sf.scenes.penumbra(), 16, 16, spp=8, checkpoint=tmp_path / "c.ckpt").save(tmp_path / "a.png")
+    for name in ("c.ckpt", "a.png"):
+        assert (tmp_path / name).stat().st_mode & 0o777 == 0o600

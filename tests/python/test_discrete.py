@@ -92,3 +92,9 @@ def test_out_is_filled_in_place() -> None:
 def test_bad_input_is_named(call: Any, error: type[Exception], match: str) -> None:
     with pytest.raises(error, match=match):
         call()
+
+
+def test_piecewise_doubles_stay_below_one() -> None:
+    last = 1 - 2.0**-53
+    assert sf.PiecewiseConstant1D([1, 3]).sample([last])[0] < 1
+    assert (sf.PiecewiseConstant2D([[1, 3], [1, 3]]).sample([[last, last]]) < 1).all()

@@ -282,3 +282,9 @@ def test_every_kind_can_be_pickled(make: Any, more: Any) -> None:
 def test_bad_input_is_named(call: Any, error: type[Exception], match: str) -> None:
     with pytest.raises(error, match=match):
         call()
+
+
+@pytest.mark.parametrize("p", [5e-324, 1e-310, 2.3e-308, 1e-291, 1e-289])
+def test_the_normal_quantile_of_the_smallest_probabilities(p: float) -> None:
+    special = pytest.importorskip("scipy.special")
+    assert special.log_ndtr(sf.estimate.normal_quantile(p)) == pytest.approx(np.log(p), rel=1e-10)

@@ -279,6 +279,14 @@ def test_names_are_the_same_in_upper_and_lower_case() -> None:
     assert image.color.shape == (8, 8, 3)
 
 
+@pytest.mark.parametrize("name", ["sobol\0x", "sobol\ud800"])
+def test_a_name_that_c_cannot_read_is_refused(name: str) -> None:
+    with pytest.raises(ValueError, match="null character"):
+        sf.points(name, 2)
+    with pytest.raises(ValueError, match="null character"):
+        sf.render(sf.scenes.penumbra(), 8, 8, spp=1, pattern=name)
+
+
 @pytest.mark.parametrize("separator", ["_", "-", " "])
 def test_one_separator_of_words_stands_for_all(separator: str) -> None:
     names = {"stop": f"Standard{separator}error", "pixel_filter": f"gaussian{separator}Truncated"}

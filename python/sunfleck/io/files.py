@@ -85,6 +85,8 @@ def replacing(path: FilePath, what: str, endings: Sequence[str]) -> Iterator[Pat
     beside = target.with_name(f".sunfleck-{os.urandom(8).hex()}{ending(path)}")
     os.close(os.open(beside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
     try:
+        if target.exists():
+            os.chmod(beside, target.stat().st_mode & 0o7777)
         yield beside
         with open(beside, "rb") as written:
             os.fsync(written.fileno())  # a full disk shows here, not after the old file has gone

@@ -287,11 +287,12 @@ def scene_by_name(name: str, **options: Any) -> Scene:
     >>> scene_by_name("cornell").max_bounces
     5
     """
-    if name not in SCENES and not Path(name).suffix:
+    known = next((scene for scene in SCENES if scene == name.lower()), None)
+    if known is None and not Path(name).suffix:
         raise ValueError(f"there is no scene {name!r}; give one of {', '.join(SCENES)}, or a file")
-    if name not in SCENES:
+    if known is None:
         return load(name, **options)
     given = [option for option, value in options.items() if value is not None and value is not False]
     if given:
         raise ValueError(f"{', '.join(given)} can be given for files; {name!r} is a built-in scene")
-    return SCENES[name]()
+    return SCENES[known]()
