@@ -249,7 +249,9 @@ def integrate(
         Before the first look, at least 2; rounded up to what the replicates can take.
     replicates : int
         Independent copies of the pattern, 2 to 1,024. More make the half-width steadier, fewer
-        leave more points to each: by 16 most of the former is won.
+        leave more points to each: by 16 most of the former is won. Below 6 an interval covers less
+        than it says where the function is discontinuous: of 300 intervals at 0.95 of a step in two
+        dimensions 0.80 with 2 copies, 0.90 with 3, 0.92 with 4, 0.93 with 5, 0.97 with 8.
     value_range : (low, high), optional
         Where the values of f, all components, are known to lie; others are refused. Not with
         infinite bounds. With pattern "random" the interval then is a confidence sequence, which
