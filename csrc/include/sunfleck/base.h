@@ -3,7 +3,8 @@
 
 /* base: status and error, version, instruction set, float conversion, bit tricks.
  *
- * Everything here is thread-safe: the library holds no mutable global state.
+ * Everything here is thread-safe. The library's one mutable global is a cache, behind a lock, of the memory of
+ * the film destroyed last; no result depends on it.
  */
 #ifndef SUNFLECK_BASE_H
 #define SUNFLECK_BASE_H

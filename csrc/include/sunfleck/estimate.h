@@ -3,17 +3,16 @@
 
 /* estimate: running means and variances, standard errors, and the quantiles of intervals.
  *
- * Of N samples x_i with mean m, as the lecture defines them:
+ * Of N samples x_i with mean m (S. Rotenberg 2017, "Random Numbers and Mappings", UCSD CSE168):
  *
  *     variance          (1/N) sum (x_i - m)^2              (the population's: 1/N)
  *     sample deviation  s = sqrt(1/(N-1) sum (x_i - m)^2)
  *     standard error    s / sqrt(N)
  *
- * Two ways to keep them. sf_running_sums is the lecture's (sum, sum of squares): one subtraction
+ * There are two ways to keep them. sf_running_sums has the sum and the sum of squares: one subtraction
  * of near-equal numbers at the end loses mean^2 / variance in relative precision, so that float
- * sums fail at mean / sigma of some 10^3 and double sums at some 10^8. It is kept because it is
- * the lecture's, as the one that fails. sf_moments (Welford 1962; merge by Chan, Golub & LeVeque
- * 1979) is the one to use.
+ * sums fail at mean / sigma of some 10^3 and double sums at some 10^8. It is here to show that.
+ * Use sf_moments (Welford 1962; merge by Chan, Golub & LeVeque 1979).
  *
  * Samples that are not finite are counted in `nonfinite` and otherwise left out; a vector with
  * one component that is not finite is left out whole. With no sample, mean and variance are NaN;
@@ -110,7 +109,7 @@ static inline double sf_moments_standard_error(const sf_moments *m) {
 SF_API void sf_moments_add_f32(sf_moments *m, size_t count, const float *x);
 SF_API void sf_moments_add_f64(sf_moments *m, size_t count, const double *x);
 
-/* ---- colours: a vector mean with one scalar sum of squares, the lecture's rule ---- */
+/* ---- colours: a vector mean with one scalar sum of squares ---- */
 
 /* Variance, deviation and error are the scalars of the distance |x - mean|. */
 typedef struct sf_vector_moments {
@@ -289,7 +288,7 @@ static inline double sf_weighted_moments_standard_error(const sf_weighted_moment
 /* Adds `count` samples with their weights, in order. */
 SF_API void sf_weighted_moments_add_f64(sf_weighted_moments *m, size_t count, const double *x, const double *weights);
 
-/* ---- the lecture's running sums ---- */
+/* ---- running sums ---- */
 
 typedef struct sf_running_sums {
     uint64_t count;
@@ -318,8 +317,8 @@ static inline void sf_running_sums_f32_add(sf_running_sums_f32 *r, float f) {
 SF_API void sf_running_sums_add_f64(sf_running_sums *r, size_t count, const double *f);
 SF_API void sf_running_sums_f32_add_f32(sf_running_sums_f32 *r, size_t count, const float *f);
 
-/* s/N - mean^2, negative where the subtraction has lost it; the error is then NaN, as it would
- * be on the lecture's slide. Samples that are not finite spoil the sums for good. */
+/* s/N - mean^2, negative where the subtraction has lost it; the error is then NaN, as the
+ * formula has it. Samples that are not finite spoil the sums for good. */
 static inline double sf_running_sums_mean(const sf_running_sums *r) { return r->m / (double)r->count; }
 static inline double sf_running_sums_variance(const sf_running_sums *r) {
     double mean = r->m / (double)r->count;

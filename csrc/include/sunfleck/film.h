@@ -38,7 +38,7 @@ typedef enum sf_pixel_filter {
 
 /* When a pixel is done. */
 typedef enum sf_stop_rule {
-    /* The lecture's: z(confidence) s / sqrt(N) <= tolerance after min_spp samples, with the
+    /* The classic rule: z(confidence) s / sqrt(N) <= tolerance after min_spp samples, with the
      * running vector mean and the scalar sum of squares. Kept as the baseline: points of a
      * low-discrepancy pattern are not independent (it then overstates), and a pixel that has
      * seen nothing has variance zero (it then stops, wrongly). */
@@ -58,8 +58,8 @@ typedef enum sf_stop_rule {
 /* How threads come by their random numbers. */
 typedef enum sf_seed_policy {
     SF_SEEDS_PIXEL = 0, /* keyed by seed, pixel and dimension: the picture depends on no thread */
-    SF_SEEDS_THREAD,    /* a stream of its own for each thread: the lecture's remedy */
-    SF_SEEDS_SHARED     /* the same stream for every thread: the lecture's warning. N threads
+    SF_SEEDS_THREAD,    /* a stream of its own for each thread */
+    SF_SEEDS_SHARED     /* the same stream for every thread, a common fault: N threads
                            repeat one another's noise; for the laboratory */
 } sf_seed_policy;
 

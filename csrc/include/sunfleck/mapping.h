@@ -6,7 +6,7 @@
  * A mapping is a triple. `sample` takes (s, t) in [0,1)^2 to a point x of the shape, so that
  * uniform points become points of the mapping's density; `pdf` is that density at x, its measure
  * named (area, solid angle); `invert` takes x back to (s, t) in [0,1)^2. Parameters follow the
- * points. The formulas of the lecture are kept to the letter.
+ * points. Each function names the source of its formula.
  *
  * Inline, for one's own loops (mapping_pixel.h, mapping_plane.h, mapping_sphere.h, mapping_lobe.h,
  * mapping_light.h): float, no branches, no libm

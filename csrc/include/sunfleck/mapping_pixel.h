@@ -36,7 +36,7 @@ SF_INLINE void sf_pixel_box_invert(const float x[2], float u[2]) {
     u[1] = sf_unit_clamp(x[1]);
 }
 
-/* Tent, the lecture's "Shirley": two pixels wide, its range is [-1/2, 3/2] and it leaves the
+/* Tent, also called Shirley's map: two pixels wide, its range is [-1/2, 3/2] and it leaves the
  * pixel with probability 7/16. pdf per area: (1 - |x - 1/2|) (1 - |y - 1/2|), 0 on the rim,
  * which s or t below 2^-51 reach. */
 SF_INLINE float sf_tent_sample(float s) {
@@ -64,8 +64,8 @@ SF_INLINE void sf_pixel_tent_invert(const float x[2], float u[2]) {
     u[1] = sf_tent_invert(x[1]);
 }
 
-/* Gaussian (Box & Muller 1958), standard deviation mu > 0, the lecture's 0.4. It is unbounded,
- * though the lecture has it within the pixel: 38 % of samples leave it at mu = 0.4. log(1 - s)
+/* Gaussian (Box & Muller 1958), standard deviation mu > 0, usually 0.4. It is unbounded,
+ * though often said to stay within the pixel: 38 % of samples leave it at mu = 0.4. log(1 - s)
  * in place of log s, so that s = 0 gives the centre and not infinity; the farthest sample lies
  * 5.77 mu away. pdf per area: exp(-r^2 / 2 mu^2) / (2 pi mu^2). */
 SF_INLINE void sf_pixel_gaussian_sample(float s, float t, float mu, float out[2]) {

@@ -44,7 +44,8 @@ SF_INLINE void sf_triangle_coordinates(const float x[3], const float a[3], const
     *beta = sf_dot3(ed, n) / scale;
 }
 
-/* The lecture's: alpha = t sqrt(s), beta = 1 - sqrt(s). Stretches strata towards c. */
+/* By square root (Turk 1990, "Generating Random Points in Triangles"): alpha = t sqrt(s), beta = 1 - sqrt(s). Stretches
+ * strata towards c. */
 SF_INLINE void sf_triangle_sample(float s, float t, const float a[3], const float b[3], const float c[3],
                                   float out[3]) {
     SF_ASSERT_UNIT(s, t);
@@ -114,7 +115,7 @@ SF_INLINE float sf_disk_pdf(const float x[2]) {
     return x[0] * x[0] + x[1] * x[1] <= 1.0f + 0x1p-20f ? 1.0f / SF_PI_F : 0.0f;
 }
 
-/* The lecture's: radius sqrt(t), angle 2 pi s. */
+/* By polar coordinates: radius sqrt(t), angle 2 pi s. */
 SF_INLINE void sf_disk_polar_sample(float s, float t, float out[2]) {
     SF_ASSERT_UNIT(s, t);
     float sine, cosine, radius = sqrtf(t);
@@ -151,7 +152,7 @@ SF_INLINE void sf_disk_concentric_invert(const float x[2], float u[2]) {
     u[1] = sf_unit_clamp(0.5f + 0.5f * (upright ? radius : other));
 }
 
-/* The one that the lecture crosses out, kept for the laboratory: radius t, which piles samples
+/* A common fault, kept for the laboratory: radius t, which piles samples
  * up at the centre. Its true pdf per area is 1 / (2 pi r), infinity at the centre. */
 SF_INLINE void sf_disk_naive_sample(float s, float t, float out[2]) {
     SF_ASSERT_UNIT(s, t);

@@ -14,7 +14,7 @@ extern "C" {
 
 #include "sunfleck/exact_begin.h"
 
-/* The pole is +z; the lecture's is +y: its (x, y, z) are our (x, z, y). Lengths are 1 within
+/* The pole is +z; of formulas with the pole +y, (x, y, z) are our (x, z, y). Lengths are 1 within
  * 2 ulp. Every pdf is per solid angle; a direction given to pdf or invert has length 1. */
 
 /* The direction of height z and distance `ring` from the axis, at s turns from +x. */

@@ -39,7 +39,7 @@ static inline uint64_t sf_xorshift64_lrl_next(sf_xorshift64 *g) {
     return g->state = x;
 }
 
-/* The lecture's combination: the shift-XOR above, XORed with the linear congruential
+/* A combined generator: the shift-XOR above, XORed with the linear congruential
  * x = 6364136223846793005 x + 1442695040888963407 mod 2^64 (Knuth's MMIX constants). The LCG's
  * low bits are weak and the shift-XOR is linear; neither shows through the other. Period
  * 2^64 (2^64 - 1). */
