@@ -6,6 +6,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
 #include <libgen.h>
 #include <stdio.h>
 #include <string.h>
@@ -90,7 +91,35 @@ sf_status sf_atomic_file_open(sf_atomic_file *r, const char *path, sf_error *err
         keep_mode(r);
         return SF_STATUS_OK;
     }
-    sf_status status = fail_io("write", r->beside, error);
+    sf_status status = fail_io("write", path, error);
+    close_all(r);
+    return status;
+}
+
+sf_status sf_atomic_file_open_unique(sf_atomic_file *r, const char *path, sf_error *error) {
+    *r = (sf_atomic_file){.file = -1};
+    errno = ENOMEM;
+    r->target = follow(path);
+    if (!r->target && errno != ENOMEM) return fail_io("write", path, error);
+    size_t size = r->target ? strlen(r->target) + sizeof ".sunfleck-0123456789abcdef" : 0;
+    if (r->target) r->beside = malloc(size);
+    if (!r->beside) {
+        close_all(r);
+        return sf_fail_memory(error, "a path", strlen(path));
+    }
+    const char *slash = strrchr(r->target, '/');
+    int folder = slash ? (int)(slash - r->target) + 1 : 0;
+    uint64_t key = sf_hash64((uint64_t)(1e9 * sf_seconds_now()), (uint64_t)getpid());
+    do {
+        snprintf(r->beside, size, "%.*s.sunfleck-%016" PRIx64, folder, r->target, key);
+        r->file = open(r->beside, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        key = sf_mix64(key + 1);
+    } while (r->file < 0 && errno == EEXIST);
+    if (r->file >= 0) {
+        keep_mode(r);
+        return SF_STATUS_OK;
+    }
+    sf_status status = fail_io("write", path, error);
     close_all(r);
     return status;
 }

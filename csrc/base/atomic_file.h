@@ -19,6 +19,10 @@ typedef struct sf_atomic_file {
  * replacement is then closed and nothing is left behind. */
 sf_status sf_atomic_file_open(sf_atomic_file *replacement, const char *path, sf_error *error);
 
+/* The same beside a name that nobody else has: any number of writers may be at work, and the last to commit wins. A
+ * kill leaves the file beside. */
+sf_status sf_atomic_file_open_unique(sf_atomic_file *atomic_file, const char *path, sf_error *error);
+
 /* Appends. After a failure call sf_atomic_file_abandon. */
 sf_status sf_atomic_file_write(sf_atomic_file *replacement, const void *bytes, size_t count, sf_error *error);
 

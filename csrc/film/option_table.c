@@ -52,7 +52,7 @@ static const sf_option table[] = {
     OPTION(absolute_tolerance, FLOAT64, TOLERANCE, 0, 0, 1e18, TOLERANCES, "or when it is so much, in linear radiance"),
     OPTION(relmse, FLOAT64, TOLERANCE, 0, 0, 1e18, TOLERANCES,
            "instead, the relative mean square error of the whole picture"),
-    OPTION(confidence, FLOAT64, EQUAL, 0.95, 0x1p-1022, 1 - 0x1p-53, "(0, 1)", "of the half-widths"),
+    OPTION(confidence, FLOAT64, EQUAL, 0.95, 0x1p-1074, 1 - 0x1p-53, "(0, 1)", "of the half-widths"),
     OPTION(min_spp, UINT32, EQUAL, 32, 2, SF_MAX_SPP, NULL, "samples of a pixel before the first decision"),
     OPTION(max_spp, UINT32, LARGER, 4096, 2, SF_MAX_SPP, NULL, "samples of a pixel at the most"),
     OPTION(samples, UINT64, LARGER, 0, 0, 0x1p64, NULL, "a budget of samples, alone or with seconds"),

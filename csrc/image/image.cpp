@@ -53,7 +53,7 @@ class replacing_file {
    public:
     explicit replacing_file(const std::string &path) : path_(path) {
         sf_error error;
-        if (sf_atomic_file_open(&file_, path.c_str(), &error)) throw failure{error.status, error.message};
+        if (sf_atomic_file_open_unique(&file_, path.c_str(), &error)) throw failure{error.status, error.message};
         const int descriptor = dup(file_.file);
         if (descriptor >= 0) stream_ = fdopen(descriptor, "wb");
         if (stream_) return;

@@ -124,10 +124,8 @@ sf_status sf_point_filler_create(sf_point_filler **filler, sf_error *error) {
 void sf_point_filler_destroy(sf_point_filler *filler) {
     if (!filler) return;
     local_team *last = sf_atomic_take(&filler->team, NULL);
-    if (last && last->process == getpid()) {
-        sf_thread_team_destroy(last->team);
-        free(last);
-    }
+    if (last && last->process == getpid()) sf_thread_team_destroy(last->team); /* else its threads are the parent's */
+    free(last);
     sf_point_set_destroy(sf_atomic_take(&filler->kept, NULL));
     free(filler);
 }

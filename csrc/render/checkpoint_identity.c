@@ -84,7 +84,7 @@ static sf_status find_name(const sf_container *file, const sf_option *option, co
     sf_status status = sf_checkpoint_take_text(file, name, text, error);
     if (status) return status;
     for (int value = 0; option->name_of(value); ++value) {
-        if (strcmp(option->name_of(value), text) != 0) continue;
+        if (!sf_name_matches(text, option->name_of(value))) continue; /* names had other separators once */
         memcpy((char *)options + option->offset, &value, sizeof value);
         return SF_STATUS_OK;
     }

@@ -5,6 +5,7 @@
 #ifndef SUNFLECK_CHECKPOINT_IDENTITY_H
 #define SUNFLECK_CHECKPOINT_IDENTITY_H
 
+#include <assert.h>
 #include <string.h>
 
 #include "base/container.h"
@@ -21,7 +22,8 @@ typedef struct sf_array_list {
 } sf_array_list;
 
 /* A copy of the name that lives as long as the list. */
-static inline const char *sf_array_list_name(sf_array_list *list, const char *name) {
+static inline const char *sf_array_list_name(sf_array_list *list, const char name[48]) {
+    assert(list->name_count < sizeof list->names / sizeof *list->names);
     return memcpy(list->names[list->name_count++], name, sizeof *list->names);
 }
 

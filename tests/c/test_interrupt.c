@@ -54,6 +54,28 @@ static void test_pieces_cover_the_work_in_order(void **state) {
     assert_int_equal(r.pieces, 1);
 }
 
+/* Items that take no time of the processor, as where threads of a team do the work. */
+static sf_status sleep_for_each(void *user, size_t first, size_t count, sf_error *error) {
+    (void)first;
+    (void)error;
+    double *longest = user, begun = sf_seconds_now();
+    struct timespec nap = {0, 100000};
+    for (size_t i = 0; i < count; ++i) nanosleep(&nap, NULL);
+    double seconds = sf_seconds_now() - begun;
+    *longest = seconds > *longest ? seconds : *longest;
+    return SF_STATUS_OK;
+}
+
+static void test_pieces_stay_short_where_the_caller_waits(void **state) {
+    (void)state;
+    double longest = 0;
+    record r = {.stops = 0};
+    sf_interrupt interrupt = {stop_at_second, &r};
+    assert_int_equal(sf_work_in_pieces(8192, 1, sleep_for_each, &longest, &interrupt, NULL), SF_STATUS_OK);
+    assert_true(longest < 0.35); /* by the processor's time alone pieces double up to 4,096 items, 0.6 s */
+    assert_true(r.asked > 5);
+}
+
 static void test_pieces_stop_where_one_fails_or_the_caller_says_so(void **state) {
     (void)state;
     sf_error error;
@@ -253,6 +275,7 @@ static void test_a_forked_child_goes_on_with_its_parents_filler(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_pieces_cover_the_work_in_order),
+        cmocka_unit_test(test_pieces_stay_short_where_the_caller_waits),
         cmocka_unit_test(test_pieces_stop_where_one_fails_or_the_caller_says_so),
         cmocka_unit_test(test_measures_stop_and_write_nothing),
         cmocka_unit_test(test_an_order_of_many_points_is_that_of_few),

@@ -21,7 +21,7 @@ run(${CMAKE_COMMAND} -S ${source} -B ${work}/build -G ${generator} -D CMAKE_BUIL
 run(${CMAKE_COMMAND} --build ${work}/build --config ${config})
 file(GLOB libraries ${work}/build/csrc/libsunfleck_*.so)
 list(LENGTH libraries count)
-if(count LESS 2)
+if(count LESS 2 OR (image AND count LESS 3))
   message(FATAL_ERROR "shared libraries: ${libraries}")
 endif()
 run(${python} ${source}/scripts/check-exports.py ${libraries})
