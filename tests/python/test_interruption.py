@@ -100,7 +100,6 @@ SETS = [(pattern, scramble) for pattern in sf.PATTERNS for scramble in sf.SCRAMB
 WIDE = {
     "uniform": 16,
     "sobol": 21201,
-    "sz": 16,
     "halton": 6542,
     "hammersley": 6543,
     "lattice": 4391,
@@ -108,7 +107,7 @@ WIDE = {
 }
 
 
-@pytest.mark.parametrize(("pattern", "scramble"), SETS)
+@pytest.mark.parametrize(("pattern", "scramble"), [(p, s) for p, s in SETS if p != "sz"])  # it has four dimensions
 def test_wide_points_answer(pattern: str, scramble: str) -> None:
     d = 16 if pattern == "jittered" else WIDE.get(pattern, 65536)
     n = 1 << 16 if d == 16 else 4096**2 if pattern == "orthogonal" else 4096

@@ -244,7 +244,7 @@ def test_plans_show_what_a_scene_needs() -> None:
         (lambda: sf.Environment(np.zeros((4, 4))), ValueError, r"\(height, width, 3\)"),
         (lambda: sf.Environment(np.full((4, 4, 3), np.nan)), ValueError, "nan"),
         (lambda: sf.Environment(np.zeros((4, 4, 3))), ValueError, "black"),
-        (lambda: sf.Scene([FLOOR], SPOT, light_sampling="bsdf"), ValueError, "both, light or surface"),
+        (lambda: sf.Scene([FLOOR], SPOT, light_sampling="bsdf"), ValueError, "both, light, surface"),
         (lambda: sf.Scene([FLOOR], SPOT, suns=[1]), TypeError, "sunfleck.Sun"),  # type: ignore[list-item]
         (lambda: sf.Scene([FLOOR], SPOT, solid_angle_ratio=-1), ValueError, "0 or more"),
         (lambda: sf.Scene([FLOOR], SPOT, environment=3), TypeError, "sunfleck.Environment"),  # type: ignore[arg-type]

@@ -46,6 +46,7 @@ def test_it_is_an_engine_and_both_kinds_are_tried() -> None:
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("d", [1, 3, 8])
 def test_points_are_the_patterns(name: str, d: int) -> None:
+    d = min(d, 4) if name == "sz" else d  # which has four dimensions
     n = count_near(name, 256, d)
     expected = sf.points(name, n, d, seed=11, dtype="float64")
     for engine in (Engine(name, d, seed=11), Engine(name, d, rng=11), Engine(name, d, seed=np.int64(11), total=n)):
@@ -69,8 +70,9 @@ def test_no_dimensions_and_no_points(name: str) -> None:
 def test_a_sequence_goes_on(name: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        whole = Engine(name, 5, seed=SEED).random(64)
-        engine = Engine(name, 5, seed=SEED)
+        d = 4 if name == "sz" else 5
+        whole = Engine(name, d, seed=SEED).random(64)
+        engine = Engine(name, d, seed=SEED)
         parts = [engine.random(n) for n in (1, 3, 12, 0, 17, 31)]
     assert np.array_equal(np.concatenate(parts), whole)
     assert engine.num_generated == 64

@@ -113,7 +113,7 @@ def test_each_stop_reason_has_its_colour(tmp_path: Path) -> None:
     wanted = [to_rgb(heatmaps._REASON_COLORS[name]) for name in sf.STOP_REASONS]
     assert np.abs(found - np.array(wanted)).max() < 1 / 255
     shares = {text.get_text() for text in figure.drawn.axes[0].get_legend().get_texts()}
-    assert shares == {f"{name}: 14.28 %" for name in sf.STOP_REASONS}
+    assert shares == {f"{name.replace('_', ' ')}: 14.28 %" for name in sf.STOP_REASONS}
     # Nothing of the legend is cut off.
     legend = figure.drawn.axes[0].get_legend().get_window_extent()
     assert legend.x1 <= figure.drawn.bbox.x1
