@@ -6,9 +6,9 @@
 
 /* A piece doubles while it is shorter than the one and halves where it is longer than the other, in time that the
  * caller's thread works: that it waits for a busy machine makes no piece too long, and small ones would wait more. */
-#define SHORT_PIECE_SECONDS 20e-3
-#define LONG_PIECE_SECONDS 60e-3
-#define LATE_PIECE_SECONDS 100e-3
+#define SHORT_PIECE_SECONDS 10e-3
+#define LONG_PIECE_SECONDS 30e-3
+#define LATE_PIECE_SECONDS 60e-3
 
 static size_t next_piece(size_t piece, size_t smallest, size_t total, double worked, double passed) {
     if (worked < SHORT_PIECE_SECONDS && passed < LONG_PIECE_SECONDS) return piece < total / 2 ? 2 * piece : total;

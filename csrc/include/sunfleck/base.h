@@ -76,7 +76,7 @@ typedef sf_status (*sf_piece_fn)(void *user, size_t first, size_t count, sf_erro
 
 /* Calls `work` with `user` for pieces of items 0 .. total - 1 in order, on the calling thread, until one fails,
  * whose status it returns, or `interrupt` says stop. Each piece but the last is a multiple of `smallest`, at least 1,
- * and they grow until each takes some 20 to 60 ms, so that neither short work nor long pays for the asking. Without
+ * and they grow until each takes some 10 to 30 ms, so that neither short work nor long pays for the asking. Without
  * an interrupt, or where total <= smallest, there is one piece, even of no items. Thread-safe. */
 SF_API sf_status sf_work_in_pieces(size_t total, size_t smallest, sf_piece_fn work, void *user,
                                    const sf_interrupt *interrupt, sf_error *error);
