@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <inttypes.h>
 #include <libgen.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
@@ -73,21 +74,21 @@ static void keep_mode(const sf_atomic_file *r) {
     if (stat(r->target, &old) == 0) (void)fchmod(r->file, old.st_mode & 07777);
 }
 
-sf_status sf_atomic_file_open(sf_atomic_file *r, const char *path, sf_error *error) {
+/* Finds the target, and has room beside it for a name of `extra` more bytes than the target's. */
+static sf_status begin(sf_atomic_file *r, const char *path, size_t extra, sf_error *error) {
     *r = (sf_atomic_file){.file = -1};
     errno = ENOMEM;
     r->target = follow(path);
     if (!r->target && errno != ENOMEM) return fail_io("write", path, error);
-    if (r->target) r->beside = malloc(strlen(r->target) + sizeof SUFFIX);
-    if (!r->beside) {
-        close_all(r);
-        return sf_fail_memory(error, "a path", strlen(path));
-    }
-    strcpy(r->beside, r->target);
-    strcat(r->beside, SUFFIX);
-    int opened = 0;
-    while (opened == 0) opened = open_and_lock(r);
-    if (opened > 0) {
+    if (r->target) r->beside = malloc(strlen(r->target) + extra);
+    if (r->beside) return SF_STATUS_OK;
+    close_all(r);
+    return sf_fail_memory(error, "a path", strlen(path));
+}
+
+/* What both ways of opening end with; where they failed, errno says why. */
+static sf_status finish(sf_atomic_file *r, bool opened, const char *path, sf_error *error) {
+    if (opened) {
         keep_mode(r);
         return SF_STATUS_OK;
     }
@@ -96,32 +97,29 @@ sf_status sf_atomic_file_open(sf_atomic_file *r, const char *path, sf_error *err
     return status;
 }
 
+sf_status sf_atomic_file_open(sf_atomic_file *r, const char *path, sf_error *error) {
+    sf_status status = begin(r, path, sizeof SUFFIX, error);
+    if (status) return status;
+    strcpy(r->beside, r->target);
+    strcat(r->beside, SUFFIX);
+    int opened = 0;
+    while (opened == 0) opened = open_and_lock(r);
+    return finish(r, opened > 0, path, error);
+}
+
 sf_status sf_atomic_file_open_unique(sf_atomic_file *r, const char *path, sf_error *error) {
-    *r = (sf_atomic_file){.file = -1};
-    errno = ENOMEM;
-    r->target = follow(path);
-    if (!r->target && errno != ENOMEM) return fail_io("write", path, error);
-    size_t size = r->target ? strlen(r->target) + sizeof ".sunfleck-0123456789abcdef" : 0;
-    if (r->target) r->beside = malloc(size);
-    if (!r->beside) {
-        close_all(r);
-        return sf_fail_memory(error, "a path", strlen(path));
-    }
+    const size_t extra = sizeof ".sunfleck-0123456789abcdef";
+    sf_status status = begin(r, path, extra, error);
+    if (status) return status;
     const char *slash = strrchr(r->target, '/');
     int folder = slash ? (int)(slash - r->target) + 1 : 0;
     uint64_t key = sf_hash64((uint64_t)(1e9 * sf_seconds_now()), (uint64_t)getpid());
     do {
-        snprintf(r->beside, size, "%.*s.sunfleck-%016" PRIx64, folder, r->target, key);
+        snprintf(r->beside, strlen(r->target) + extra, "%.*s.sunfleck-%016" PRIx64, folder, r->target, key);
         r->file = open(r->beside, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         key = sf_mix64(key + 1);
     } while (r->file < 0 && errno == EEXIST);
-    if (r->file >= 0) {
-        keep_mode(r);
-        return SF_STATUS_OK;
-    }
-    sf_status status = fail_io("write", path, error);
-    close_all(r);
-    return status;
+    return finish(r, r->file >= 0, path, error);
 }
 
 sf_status sf_atomic_file_write(sf_atomic_file *r, const void *bytes, size_t count, sf_error *error) {

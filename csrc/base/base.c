@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Sunfleck developers
 // SPDX-License-Identifier: Apache-2.0
 
-/* Version, names of statuses, and the instruction set that kernels run at. */
+/* Version, names of statuses, how names compare, and the instruction set that kernels run at. */
 #include "sunfleck/base.h"
 
 #include <stdlib.h>
@@ -24,6 +24,16 @@ const char *sf_status_name(sf_status status) {
         case SF_STATUS_INTERRUPTED: return "interrupted";
     }
     return "unknown status";
+}
+
+/* What a character stands for: small letters for capital ones, and one separator of words for all three. Of ASCII
+ * alone, in which all names are; the C library's `tolower` depends on the locale. */
+static int folded(char c) { return c == '-' || c == ' ' ? '_' : c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; }
+
+int sf_name_matches(const char *name, const char *known) {
+    if (!name || !known) return 0;
+    while (*name && folded(*name) == folded(*known)) ++name, ++known;
+    return *name == *known;
 }
 
 const char *sf_isa_name(sf_isa isa) {

@@ -10,7 +10,6 @@
 
 /* Writes the index of `name` among those that `name_at` lists up to NULL, as sf_name_matches has it.
  * Refuses another, and NULL, by naming `what` and all there are. */
-sf_status sf_name_find(const char *what, const char *name, const char *(*name_at)(unsigned), unsigned *index,
-                       sf_error *error);
+sf_status sf_name_find(const char *what, const char *name, const char *(*name_at)(int), int *index, sf_error *error);
 
 #endif

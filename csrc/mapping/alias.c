@@ -81,13 +81,16 @@ static double scale_weights(const double *weights, size_t count, double largest,
     return total;
 }
 
-static sf_status build(const double *weights, size_t count, float *keep, uint32_t *alias, sf_watch *watch,
-                       sf_error *error) {
-    double largest;
+static sf_status check(const double *weights, size_t count, double *largest, sf_watch *watch, sf_error *error) {
     if (count < 1 || count > UINT32_MAX)
         return sf_fail(error, SF_STATUS_INVALID_VALUE, "alias table: count is %zu; it must be 1 .. 2^32 - 1", count);
-    sf_status status = sf_check_weights("alias table", weights, count, &largest, watch, error);
-    if (status) return status;
+    return sf_check_weights("alias table", weights, count, largest, watch, error);
+}
+
+/* Of weights that are checked. */
+static sf_status build(const double *weights, size_t count, double largest, float *keep, uint32_t *alias,
+                       sf_watch *watch, sf_error *error) {
+    sf_status status;
     double *share = malloc(count * sizeof *share);
     uint32_t *order = malloc(count * sizeof *order);
     if (share && order) {
@@ -104,9 +107,11 @@ static sf_status build(const double *weights, size_t count, float *keep, uint32_
 }
 
 sf_status sf_alias_build(const double *weights, size_t count, float *keep, uint32_t *alias, sf_error *error) {
+    double largest;
     sf_watch watch;
     sf_watch_begin(&watch, NULL);
-    return build(weights, count, keep, alias, &watch, error);
+    sf_status status = check(weights, count, &largest, &watch, error);
+    return status ? status : build(weights, count, largest, keep, alias, &watch, error);
 }
 
 /* ---- the table as an object ---- */
@@ -132,7 +137,7 @@ sf_status sf_alias_table_create(const double *weights, size_t count, sf_alias_ta
     double largest;
     sf_watch watch;
     sf_watch_begin(&watch, interrupt);
-    sf_status status = sf_check_weights("alias table", weights, count, &largest, &watch, error);
+    sf_status status = check(weights, count, &largest, &watch, error);
     if (status) return status;
     sf_alias_table *made = calloc(1, sizeof *made);
     if (!made) return sf_fail_memory(error, "an alias table", sizeof *made);
@@ -143,7 +148,7 @@ sf_status sf_alias_table_create(const double *weights, size_t count, sf_alias_ta
     if (!made->keep || !made->alias || !made->pdf)
         status = sf_fail_memory(error, "an alias table", count * 16);
     else
-        status = build(weights, count, made->keep, made->alias, &watch, error);
+        status = build(weights, count, largest, made->keep, made->alias, &watch, error);
     if (!status) {
         double total = scale_weights(weights, count, largest, made->pdf, &watch);
         for (size_t i = 0; i < count && !sf_watch_item(&watch, i); ++i) made->pdf[i] /= total;

@@ -117,10 +117,10 @@ const char *sf_mapping_description(sf_mapping mapping) {
     return is_known(mapping) ? entries[mapping].description : NULL;
 }
 
-static const char *name_at(unsigned mapping) { return sf_mapping_name((sf_mapping)mapping); }
+static const char *name_at(int mapping) { return sf_mapping_name((sf_mapping)mapping); }
 
 sf_status sf_mapping_find(const char *name, sf_mapping *mapping, sf_error *error) {
-    unsigned index = 0;
+    int index = 0;
     sf_status status = sf_name_find("mapping", name, name_at, &index, error);
     if (status == SF_STATUS_OK) *mapping = (sf_mapping)index;
     return status;

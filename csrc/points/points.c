@@ -93,18 +93,18 @@ const char *sf_scramble_description(sf_scramble scramble) {
     return (unsigned)scramble < SF_SCRAMBLE_COUNT ? scrambles[scramble].description : NULL;
 }
 
-static const char *pattern_name_at(unsigned i) { return sf_pattern_name((sf_pattern)i); }
-static const char *scramble_name_at(unsigned i) { return sf_scramble_name((sf_scramble)i); }
+static const char *pattern_name_at(int i) { return sf_pattern_name((sf_pattern)i); }
+static const char *scramble_name_at(int i) { return sf_scramble_name((sf_scramble)i); }
 
 sf_status sf_pattern_find(const char *name, sf_pattern *pattern, sf_error *error) {
-    unsigned index = 0;
+    int index = 0;
     sf_status status = sf_name_find("pattern", name, pattern_name_at, &index, error);
     if (status == SF_STATUS_OK) *pattern = (sf_pattern)index;
     return status;
 }
 
 sf_status sf_scramble_find(const char *name, sf_scramble *scramble, sf_error *error) {
-    unsigned index = 0;
+    int index = 0;
     sf_status status = sf_name_find("scramble", name, scramble_name_at, &index, error);
     if (status == SF_STATUS_OK) *scramble = (sf_scramble)index;
     return status;
@@ -234,6 +234,14 @@ sf_status sf_points_check_range(const sf_points_options *options, uint64_t first
                        "points %" PRIu64 " and %" PRIu64 " more are asked for, of a total of %" PRIu64, first, count,
                        options->total);
     return SF_STATUS_OK;
+}
+
+sf_status sf_points_complete(sf_points_options *options, uint64_t count, sf_error *error) {
+    sf_status status = sf_points_check_dims(options, error);
+    if (status != SF_STATUS_OK) return status;
+    if (sf_pattern_needs_total(options->pattern) && options->total == 0 && options->first <= UINT64_MAX - count)
+        options->total = options->first + count;
+    return sf_points_check_range(options, options->first, count, error);
 }
 
 /* ---- sets ---- */

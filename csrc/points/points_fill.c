@@ -73,14 +73,10 @@ static void fill_share(void *user, unsigned share) {
 }
 
 /* Threads pay from some 2^16 words each, as starting one takes as long as making them; a team's,
- * which need not be started, from 2^15. */
+ * which need not be started, from half as many. */
 static unsigned useful_threads(const sf_point_set *set, size_t count, uint32_t asked, const sf_thread_team *team) {
-    enum { MAX_THREADS = SF_THREAD_TEAM_MAX + 1 };
-    size_t least_words = (size_t)1 << (team ? 15 : 16);
-    unsigned threads = asked ? asked : sf_processor_count();
-    size_t most = count / (least_words / set->options.dims + 1);
-    if (threads > MAX_THREADS) threads = MAX_THREADS;
-    return most < threads ? (unsigned)most + !most : threads;
+    size_t least_words = team ? SF_TEAM_LEAST_WORDS : 2 * SF_TEAM_LEAST_WORDS;
+    return sf_parallel_threads(asked, count / (least_words / set->options.dims + 1));
 }
 
 /* Arrays that the last cache can't hold are written past it, without reading first what is
@@ -140,10 +136,8 @@ static sf_status fill(const sf_point_set *set, uint64_t first, size_t count, sf_
 static sf_status fill_once(const sf_points_options *options, size_t count, sf_number_type type, void *out,
                            sf_error *error) {
     sf_points_options complete = *options;
-    if (complete.total == 0 && options->first <= UINT64_MAX - count) complete.total = options->first + count;
     sf_point_set set;
-    sf_status status = sf_points_check_dims(options, error);
-    if (status == SF_STATUS_OK) status = sf_points_check_range(&complete, options->first, count, error);
+    sf_status status = sf_points_complete(&complete, count, error);
     if (status == SF_STATUS_OK) status = sf_point_set_init(&set, &complete, error);
     if (status != SF_STATUS_OK) return status;
     status = fill(&set, options->first, count, type, out, error);

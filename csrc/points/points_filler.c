@@ -43,7 +43,7 @@ static sf_thread_team *team_of(sf_point_filler *filler) {
 
 /* Below it no fill uses two threads, even of a team. */
 static int may_share(const sf_points_options *o, size_t count) {
-    return o->threads != 1 && count >= ((size_t)1 << 15) / o->dims;
+    return o->threads != 1 && count >= SF_TEAM_LEAST_WORDS / o->dims;
 }
 
 static int serves(const sf_point_set *set, const sf_points_options *o) {
@@ -84,10 +84,7 @@ static size_t smallest_piece(uint32_t dims) {
 static sf_status fill(sf_point_filler *filler, const sf_points_options *options, size_t count, sf_number_type type,
                       void *out, const sf_interrupt *interrupt, sf_error *error) {
     sf_points_options o = *options;
-    sf_status status = sf_points_check_dims(options, error);
-    if (status == SF_STATUS_OK && sf_pattern_needs_total(o.pattern) && o.total == 0 && o.first <= UINT64_MAX - count)
-        o.total = o.first + count;
-    if (status == SF_STATUS_OK) status = sf_points_check_range(&o, o.first, count, error);
+    sf_status status = sf_points_complete(&o, count, error);
     if (status != SF_STATUS_OK) return status;
     int keep = worth_keeping(&o);
     sf_point_set *set = keep ? sf_atomic_take(&filler->kept, NULL) : NULL;

@@ -12,6 +12,9 @@
 /* How many words a thread makes at a time, of 4 bytes: half of a 32 KiB first cache. */
 enum { SF_POINTS_CHUNK_WORDS = 4096 };
 
+/* Words that it takes a thread of a team to be worth waking. */
+#define SF_TEAM_LEAST_WORDS ((size_t)1 << 15)
+
 /* Words of a thread's state for each dimension. */
 enum { SF_POINTS_STATE_WORDS = 10 };
 
@@ -57,6 +60,8 @@ struct sf_pattern_method {
 sf_status sf_points_check_pattern(sf_pattern pattern, uint32_t dims, sf_error *error);
 sf_status sf_points_check_dims(const sf_points_options *options, sf_error *error); /* with `pad` */
 sf_status sf_points_check_range(const sf_points_options *options, uint64_t first, uint64_t count, sf_error *error);
+/* Checks both for a fill of `count` points, whose number is the total where the pattern needs one and none is given. */
+sf_status sf_points_complete(sf_points_options *options, uint64_t count, sf_error *error);
 
 /* points.c: checks all options and makes the tables; frees what a set holds, not the set. */
 sf_status sf_point_set_init(sf_point_set *set, const sf_points_options *options, sf_error *error);

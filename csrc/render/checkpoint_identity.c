@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "base/name.h"
 #include "film/film_internal.h"
 #include "film/mask.h"
 #include "film/option_table.h"
@@ -83,13 +84,12 @@ static sf_status find_name(const sf_container *file, const sf_option *option, co
     char text[SF_CHECKPOINT_TEXT_SIZE];
     sf_status status = sf_checkpoint_take_text(file, name, text, error);
     if (status) return status;
-    for (int value = 0; option->name_of(value); ++value) {
-        if (!sf_name_matches(text, option->name_of(value))) continue; /* names had other separators once */
-        memcpy((char *)options + option->offset, &value, sizeof value);
-        return SF_STATUS_OK;
-    }
-    return sf_fail(error, SF_STATUS_IO, "checkpoint '%s' has %s '%s', which this Sunfleck does not know", file->path,
-                   name, text);
+    int value;
+    if (sf_name_find(option->name, text, option->name_of, &value, NULL))
+        return sf_fail(error, SF_STATUS_IO, "checkpoint '%s' has %s '%s', which this Sunfleck does not know",
+                       file->path, name, text);
+    memcpy((char *)options + option->offset, &value, sizeof value);
+    return SF_STATUS_OK;
 }
 
 sf_status sf_checkpoint_take_options(const sf_container *file, sf_render_options *options, sf_error *error) {

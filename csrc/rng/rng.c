@@ -60,10 +60,10 @@ const char *sf_rng_description(sf_rng_kind kind) {
 
 unsigned sf_rng_native_bits(sf_rng_kind kind) { return (unsigned)kind < SF_RNG_COUNT ? methods[kind]->native_bits : 0; }
 
-static const char *name_at(unsigned kind) { return sf_rng_name((sf_rng_kind)kind); }
+static const char *name_at(int kind) { return sf_rng_name((sf_rng_kind)kind); }
 
 sf_status sf_rng_find(const char *name, sf_rng_kind *kind, sf_error *error) {
-    unsigned index = 0;
+    int index = 0;
     sf_status status = sf_name_find("generator", name, name_at, &index, error);
     if (status == SF_STATUS_OK) *kind = (sf_rng_kind)index;
     return status;

@@ -62,10 +62,10 @@ const char *sf_discrepancy_kind_description(sf_discrepancy_kind kind) {
     return (unsigned)kind < SF_DISCREPANCY_KIND_COUNT ? kinds[kind].description : NULL;
 }
 
-static const char *name_at(unsigned kind) { return sf_discrepancy_kind_name((sf_discrepancy_kind)kind); }
+static const char *name_at(int kind) { return sf_discrepancy_kind_name((sf_discrepancy_kind)kind); }
 
 sf_status sf_discrepancy_kind_find(const char *name, sf_discrepancy_kind *kind, sf_error *error) {
-    unsigned index = 0;
+    int index = 0;
     sf_status status = sf_name_find("kind", name, name_at, &index, error);
     if (status == SF_STATUS_OK) *kind = (sf_discrepancy_kind)index;
     return status;

@@ -70,6 +70,17 @@ void call_interruptibly(Function &&function) {
     raise_unless_ok(status, error);
 }
 
+// What pieces of work have at the least: rows that cost next to nothing each, or single values that cost still less.
+constexpr size_t rows_of_a_piece = size_t(1) << 16, values_of_a_piece = size_t(1) << 18;
+
+// call_interruptibly of in_checked_pieces: work(first, rows, error), over rows that cost next to nothing each.
+template <class Work>
+void call_in_checked_pieces(size_t rows, Work &&work) {
+    call_interruptibly([&](const sf_interrupt *interrupt, sf_error *error) {
+        return in_checked_pieces(rows, rows_of_a_piece, interrupt, error, work);
+    });
+}
+
 // A C struct that threads share, and the lock by which they take turns. No thread waits for the lock while it has the
 // GIL, so that neither can wait for the other. A fork waits until no struct is half changed.
 template <class T>

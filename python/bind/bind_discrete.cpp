@@ -11,8 +11,6 @@
 
 namespace {
 
-constexpr size_t rows_of_a_piece = size_t(1) << 16;
-
 struct alias_table {
     std::unique_ptr<sf_alias_table, decltype(&sf_alias_table_destroy)> table{nullptr, sf_alias_table_destroy};
 
@@ -32,11 +30,8 @@ struct alias_table {
 
     template <class In, class Out, fill_function<In, Out> Fill>
     void run(flat_array<const In> in, flat_array<Out> out) const {
-        call_interruptibly([&](const sf_interrupt *interrupt, sf_error *error) {
-            return in_checked_pieces(
-                in.size(), rows_of_a_piece, interrupt, error, [&](size_t first, size_t count, sf_error *refused) {
-                    return Fill(table.get(), count, in.data() + first, out.data() + first, refused);
-                });
+        call_in_checked_pieces(in.size(), [&](size_t first, size_t count, sf_error *error) {
+            return Fill(table.get(), count, in.data() + first, out.data() + first, error);
         });
     }
 };
@@ -65,9 +60,7 @@ struct piecewise {
         auto work = [&](size_t first, size_t rows, sf_error *error) {
             return function(density.get(), rows, in.data() + first * width, out.data() + first * out_width, error);
         };
-        call_interruptibly([&](const sf_interrupt *interrupt, sf_error *error) {
-            return in_checked_pieces(in.size() / width, rows_of_a_piece, interrupt, error, work);
-        });
+        call_in_checked_pieces(in.size() / width, work);
     }
 
     void fill(const std::string &operation, flat_array<const float> in, flat_array<float> out) const {

@@ -23,7 +23,7 @@ void add_blocks(shared<State> &to, size_t count, size_t width, const T *x) {
     sf_block_moments blocks;
     sf_block_moments_begin(&blocks);
     call_interruptibly([&](const sf_interrupt *interrupt, sf_error *error) {
-        return in_pieces(count, size_t(1) << 18, interrupt, error, [&](size_t first, size_t rows, sf_error *) {
+        return in_pieces(count, values_of_a_piece, interrupt, error, [&](size_t first, size_t rows, sf_error *) {
             Add(&blocks, rows, x + first * width);
             return SF_STATUS_OK;
         });
@@ -126,7 +126,7 @@ nb::class_<shared<T>> bind_zeroed(nb::module_ &m, const char *name) {
 template <class T, class X, void (*Add)(T *, size_t, const X *)>
 void add_all(shared<T> &to, flat_array<const X> x) {
     // One sample after another, so that pieces add up to the same bits.
-    to.use_in_pieces(x.size(), size_t(1) << 18,
+    to.use_in_pieces(x.size(), values_of_a_piece,
                      [&](T *now, size_t first, size_t count) { Add(now, count, x.data() + first); });
 }
 
@@ -163,7 +163,7 @@ void bind_weighted(nb::module_ &m) {
             "add",
             [](shared<weighted> &self, flat_array<const double> x, flat_array<const double> weights) {
                 if (x.size() != weights.size()) throw nb::value_error("each sample must have a weight");
-                self.use_in_pieces(x.size(), size_t(1) << 18, [&](weighted *now, size_t first, size_t count) {
+                self.use_in_pieces(x.size(), values_of_a_piece, [&](weighted *now, size_t first, size_t count) {
                     sf_weighted_moments_add_f64(now, count, x.data() + first, weights.data() + first);
                 });
             },

@@ -13,8 +13,6 @@
 
 namespace {
 
-constexpr size_t rows_of_a_piece = size_t(1) << 16;
-
 sf_mapping find(const std::string &name) {
     sf_mapping mapping;
     sf_error error;
@@ -82,9 +80,7 @@ void fill(const std::string &operation, const std::string &name, flat_array<cons
         return function(mapping, rows, input.data() + first * width, parts, strides, out.data() + first * out_width,
                         error);
     };
-    call_interruptibly([&](const sf_interrupt *interrupt, sf_error *error) {
-        return in_checked_pieces(count, rows_of_a_piece, interrupt, error, work);
-    });
+    call_in_checked_pieces(count, work);
 }
 
 // A term of a GGX microsurface; v is None but for the third, alphas are one value or one for each point.
@@ -102,9 +98,7 @@ void fill_ggx(int term, flat_array<const T> w, std::optional<flat_array<const T>
         else
             return sf_ggx_fill_f64(which, rows, from, other, across, along, strides, out.data() + first, error);
     };
-    call_interruptibly([&](const sf_interrupt *interrupt, sf_error *error) {
-        return in_checked_pieces(w.size() / 3, rows_of_a_piece, interrupt, error, work);
-    });
+    call_in_checked_pieces(w.size() / 3, work);
 }
 
 }  // namespace

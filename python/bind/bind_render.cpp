@@ -193,22 +193,15 @@ void set_option(sf_render_options &options, const sf_option &option, nb::handle 
 // Options of the table of options, by their names.
 using option_values = nb::typed<nb::dict, nb::str, nb::any>;
 
+const sf_option &option_named(const std::string &name) {
+    for (size_t i = 0; const sf_option *option = sf_render_option(i); ++i)
+        if (name == option->name) return *option;
+    throw nb::type_error(("a render has no option '" + name + "'").c_str());
+}
+
 sf_render_options options_of(const option_values &given) {
     sf_render_options options = sf_render_options_default();
-    size_t known = 0;
-    for (size_t i = 0; const sf_option *option = sf_render_option(i); ++i) {
-        if (!given.contains(option->name)) continue;
-        set_option(options, *option, given[option->name]);
-        ++known;
-    }
-    if (known == given.size()) return options;
-    for (auto [name, value] : given) {
-        size_t i = 0;
-        while (sf_render_option(i) && nb::cast<std::string>(name) != sf_render_option(i)->name) ++i;
-        if (sf_render_option(i)) continue;
-        std::string message = "a render has no option '" + nb::cast<std::string>(name) + "'";
-        throw nb::type_error(message.c_str());
-    }
+    for (auto [name, value] : given) set_option(options, option_named(nb::cast<std::string>(name)), value);
     return options;
 }
 

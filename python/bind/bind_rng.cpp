@@ -51,7 +51,7 @@ sf_lcg_parameters constants(sf_rng_kind kind, std::optional<uint64_t> a, std::op
 
 template <class T, void (*Fill)(sf_rng *, size_t, T *)>
 void fill(generator &g, flat_array<T> out) {
-    g.use_in_pieces(out.size(), size_t(1) << 18,
+    g.use_in_pieces(out.size(), values_of_a_piece,
                     [&](sf_rng *rng, size_t first, size_t count) { Fill(rng, count, out.data() + first); });
 }
 
